@@ -73,7 +73,7 @@ impl Settings {
 }
 
 /// An absolute path; `None` if it is not UTF-8, which JSON cannot store.
-fn absolute(path: &Path) -> Option<String> {
+pub fn absolute(path: &Path) -> Option<String> {
     std::path::absolute(path).ok()?.to_str().map(str::to_owned)
 }
 

@@ -7,6 +7,8 @@ mod events;
 pub mod orbit_camera;
 pub mod save_state;
 mod saving;
+mod shown_text;
+pub mod tabs;
 mod text;
 
 use std::collections::BTreeMap;
@@ -28,13 +30,14 @@ use crate::language::worker::{LanguageAnswer, LanguageRequest, LanguageWorker};
 use crate::render::picture::{Picture, RenderEvent, RenderRequest};
 use crate::render::pixel_info::PixelInfo;
 use crate::render::worker::RenderWorker;
-use crate::scene::document::{Imports, path_of};
+use crate::scene::document::{TextsByPath, folders_of, path_of};
 use crate::scene::model::Model;
 use crate::scene::param_values::ParamValues;
 use crate::session::clock::Clock;
 use crate::session::draft::Draft;
 use crate::session::orbit_camera::{CameraState, OrbitCamera};
 use crate::session::save_state::Saving;
+use crate::session::tabs::Tabs;
 use crate::views::mode::ViewMode;
 use crate::views::slice_plane::SlicePlane;
 
@@ -88,12 +91,16 @@ pub struct Session {
     pub model: Option<Arc<Model>>,
     /// The text of the scene: that of the file, or one that was edited in the window.
     draft: Draft,
+    /// The texts of other files.
+    tabs: Tabs,
     /// Whether the changed values are being written to the file.
     saving: Saving,
     /// Errors and warnings of the text that was compiled last.
     pub diagnostics: SceneDiagnostics,
     /// That text.
     diagnosed: Arc<str>,
+    /// The texts of the imported files that were compiled with it.
+    diagnosed_imports: TextsByPath,
     /// Why there is no newer model, apart from diagnostics.
     pub problem: Option<String>,
     /// Why the last picture could not be drawn.
@@ -167,9 +174,11 @@ impl Session {
             refine: true,
             model: None,
             draft: Draft::default(),
+            tabs: Tabs::default(),
             saving: Saving::default(),
             diagnostics: SceneDiagnostics::default(),
             diagnosed: Arc::default(),
+            diagnosed_imports: TextsByPath::new(),
             problem: None,
             render_error: None,
             building: false,
@@ -211,6 +220,7 @@ impl Session {
         self.build = BuildRequest {
             path,
             draft: None,
+            imports: TextsByPath::new(),
             method: None,
             parallel: None,
             values: CompileValues::new(),
@@ -221,6 +231,7 @@ impl Session {
         (self.diagnostics, self.problem, self.render_error) =
             (SceneDiagnostics::default(), None, None);
         (self.draft, self.saving) = (Draft::default(), Saving::default());
+        self.tabs = Tabs::default();
         (self.follows_scene, self.fitted, self.tolerance) = (true, None, 1.0);
         self.accuracy.reset();
         self.watch_own_folder();
@@ -366,7 +377,7 @@ impl Session {
     }
 
     fn watch_own_folder(&mut self) {
-        let own = Imports::new(&self.build.path).folders();
+        let own = folders_of(&self.build.path);
         self.watcher.set_folders(&own);
     }
 

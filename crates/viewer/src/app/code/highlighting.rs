@@ -8,7 +8,7 @@ use eframe::egui::{Color32, FontId, Stroke};
 use sdfc_ide::TokenRole;
 use sdfc_syntax::{Class, classes};
 
-use super::theme::Palette;
+use crate::app::theme::Palette;
 use crate::compile::diagnostics::ShownDiagnostic;
 use crate::compile::text_diff::TextDiff;
 use crate::language::worker::LanguageAnswer;
@@ -50,11 +50,24 @@ impl Mark {
     }
 }
 
-/// The text with its colours: the roles of its words, underlined marks and a lit range. Lines are
-/// not wrapped.
+/// What is shown of a text beside its tokens.
+pub struct Decorations<'a> {
+    /// The roles of its words.
+    pub roles: &'a Roles,
+    /// Underlined ranges.
+    pub marks: &'a [Mark],
+    /// The code of a shape that was clicked.
+    pub lit: Option<&'a Range<usize>>,
+    /// What a search has found, in order.
+    pub found: &'a [Range<usize>],
+    /// The chosen one of them.
+    pub current: Option<&'a Range<usize>>,
+}
+
+/// The text with its colours. Lines are not wrapped.
 pub fn highlighted(
     text: &str,
-    (roles, marks, lit): (&Roles, &[Mark], Option<&Range<usize>>),
+    Decorations { roles, marks, lit, found, current }: &Decorations<'_>,
     palette: &Palette,
     font: &FontId,
 ) -> LayoutJob {
@@ -64,7 +77,7 @@ pub fn highlighted(
     let tokens = classes(text);
     ends.extend(tokens.iter().flat_map(|(_, range)| [range.start, range.end]));
     ends.extend(marks.iter().flat_map(|mark| [mark.range.start, mark.range.end]));
-    ends.extend(lit.into_iter().flat_map(|range| [range.start, range.end]));
+    ends.extend(lit.iter().copied().chain(*found).flat_map(|range| [range.start, range.end]));
     ends.extend([0, text.len()]);
     ends.retain(|end| text.is_char_boundary(*end));
     ends.sort_unstable();
@@ -88,6 +101,11 @@ pub fn highlighted(
         }
         if lit.is_some_and(|lit| lit.contains(&start)) {
             format.background = palette.chosen;
+        }
+        let next = found.partition_point(|range| range.end <= start);
+        if let Some(range) = found.get(next).filter(|range| range.contains(&start)) {
+            let is_current = *current == Some(range);
+            format.background = if is_current { palette.found } else { palette.line };
         }
         job.append(&text[start..end], 0.0, format);
     }
@@ -122,7 +140,7 @@ fn color_of_role(role: TokenRole, palette: &Palette) -> Color32 {
 
 #[cfg(test)]
 mod tests {
-    use std::path::PathBuf;
+    use std::path::Path;
     use std::sync::mpsc::channel;
 
     use super::*;
@@ -133,8 +151,8 @@ mod tests {
     fn roles_move_with_their_words_until_there_is_a_new_answer() {
         let (sender, answers) = channel();
         let worker = LanguageWorker::new(sender, || {}).unwrap();
-        let (path, text) = (PathBuf::from("a.sdf"), "let a = 1\nsphere(a) | box(2)\n");
-        worker.send(LanguageRequest { path, text: text.into(), cursor: None });
+        let (path, text) = (Path::new("a.sdf"), "let a = 1\nsphere(a) | box(2)\n");
+        worker.send(LanguageRequest { cursor: None, ..LanguageRequest::new(path, text) });
         let answer = answers.recv_timeout(TIMEOUT).unwrap();
         let edited = "let a = 1\nsphere(a + a) | box(2)\n";
         let roles = roles(Some(&answer), edited);

@@ -1,0 +1,348 @@
+//! An editor of the shown text: colours, line numbers, underlined errors, descriptions,
+//! completions, search, undo and redo.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use eframe::egui::text_edit::TextEditOutput;
+use eframe::egui::{self, Event, Galley, Id, Key, Modifiers, TextBuffer, Ui};
+use sdfc_ide::Completion;
+
+use super::color_button::ColorButton;
+use super::completion_list::CompletionList;
+use super::find_bar::{FindBar, FindRequest};
+use super::highlighting::{Decorations, Mark, highlighted, roles};
+use super::hover_text::describe;
+use super::jumps::{self, Jumps};
+use super::text_state::{byte_of, cursor_at, editor_id, record_change, select};
+use crate::app::theme;
+use crate::compile::diagnostics::ShownDiagnostic;
+use crate::language::completions::{inserted, matching};
+use crate::session::Session;
+use crate::session::tabs::TabFile;
+
+/// The width of the line numbers in points.
+const GUTTER: f32 = 40.0;
+/// What the Tab key inserts.
+const INDENT: &str = "  ";
+
+/// The state of the editor beside its texts.
+#[derive(Debug, Default)]
+pub struct CodeEditor {
+    /// The file that was shown in the last frame.
+    file: TabFile,
+    list: CompletionList,
+    find: FindBar,
+    jumps: Jumps,
+    color: ColorButton,
+    /// The cursor of the last frame as a byte offset, while the editor has the keyboard.
+    cursor: Option<usize>,
+    /// The selection of the last frame in which the editor had the keyboard, in bytes.
+    selected: Range<usize>,
+    /// A range that is lit because its shape was clicked, and the text that it belongs to.
+    lit: Option<(Range<usize>, Arc<str>)>,
+    /// The range that is scrolled to.
+    scroll: Option<Range<usize>>,
+}
+
+impl CodeEditor {
+    /// Lights the code of a shape, and scrolls to it.
+    pub fn light(&mut self, code: Option<(TabFile, Range<usize>)>, session: &mut Session) {
+        self.lit = code.and_then(|(file, range)| {
+            session.show_file(file);
+            self.scroll = Some(range.clone());
+            Some((range, Arc::clone(session.shown_text())))
+        });
+    }
+
+    /// Shows a button with the colour at the cursor, which changes it in the text.
+    pub fn color_button(&mut self, ui: &mut Ui, session: &mut Session) {
+        self.color.show(ui, session, self.cursor);
+    }
+
+    /// Opens the bar of the search.
+    pub fn search(&mut self, replaces: bool, session: &Session) {
+        self.find.open(replaces, session.shown_text(), &self.selected);
+        self.list.typing = false;
+    }
+
+    /// Goes to the declaration of the name at the cursor.
+    pub fn go_to_definition(&mut self, session: &mut Session) {
+        let from = self.selected.start;
+        self.jumps.to_definition(session, from, from);
+    }
+
+    /// Goes back to where the last jump began.
+    pub fn go_back(&mut self, session: &mut Session) {
+        self.jumps.back(session);
+    }
+
+    /// True if there is a jump to go back from.
+    pub fn can_go_back(&self) -> bool {
+        self.jumps.can_go_back()
+    }
+
+    /// Shows the editor. What is typed becomes the shown text of the session.
+    pub fn show(&mut self, ui: &mut Ui, session: &mut Session) {
+        self.handle_jump_keys(ui, session);
+        self.follow_shown_file(ui, session);
+        let id = editor_id(&self.file);
+        let has_focus = self.handle_keys(ui, id, session);
+        self.find_and_replace(ui, id, session);
+        session.ask_about_text(self.cursor.filter(|_| has_focus));
+        let found: Vec<ShownDiagnostic> = session.diagnostics_of_text().cloned().collect();
+        egui::ScrollArea::both().id_salt(id).auto_shrink(false).show(ui, |ui| {
+            let height = ui.available_height();
+            ui.horizontal_top(|ui| {
+                ui.add_space(GUTTER);
+                let mut text = session.shown_text().to_string();
+                let output = self.text_edit(ui, (id, height), &mut text, session, &found);
+                line_numbers(ui, &output.galley, output.galley_pos);
+                if let Some(range) = self.scroll.take() {
+                    let at = output.galley.pos_from_cursor(cursor_at(&text, range.start));
+                    let at = at.translate(output.galley_pos.to_vec2());
+                    ui.scroll_to_rect(at.expand2(egui::vec2(0.0, 60.0)), None);
+                }
+                self.take_edit(&output, &text, session);
+                if has_focus && let Some(cursor) = output.cursor_range {
+                    let below = output.galley.pos_from_cursor(cursor.primary).left_bottom();
+                    self.show_list(ui, id, output.galley_pos + below.to_vec2(), session);
+                }
+                self.point_at(ui, &output, (&text, &found), session);
+            });
+        });
+    }
+
+    /// Shows the text, and lets the user edit it unless it is that of a library file.
+    fn text_edit(
+        &self,
+        ui: &mut Ui,
+        (id, height): (Id, f32),
+        text: &mut String,
+        session: &Session,
+        found: &[ShownDiagnostic],
+    ) -> TextEditOutput {
+        let palette = theme::of(ui);
+        let marks: Vec<Mark> = found.iter().map(|found| Mark::of(found, palette)).collect();
+        let file = self.file.name(session.path());
+        let answer = session.language.as_ref().filter(|it| it.request.file == file);
+        let roles = roles(answer, text);
+        let lit = self.lit.as_ref().filter(|(_, of)| of == session.shown_text());
+        let (matches, current) = self.find.marked(session.shown_text());
+        let decorations = Decorations {
+            roles: &roles,
+            marks: &marks,
+            lit: lit.map(|(range, _)| range),
+            found: &matches,
+            current: current.as_ref(),
+        };
+        let font = egui::TextStyle::Monospace.resolve(ui.style());
+        let row = ui.text_style_height(&egui::TextStyle::Monospace).max(1.0);
+        let mut layouter = |ui: &Ui, text: &dyn TextBuffer, _: f32| -> Arc<Galley> {
+            let job = highlighted(text.as_str(), &decorations, palette, &font);
+            ui.fonts_mut(|fonts| fonts.layout_job(job))
+        };
+        let is_library = matches!(self.file, TabFile::Library(_));
+        let mut fixed = text.as_str();
+        let edit = match is_library {
+            true => egui::TextEdit::multiline(&mut fixed),
+            false => egui::TextEdit::multiline(text),
+        };
+        let edit = edit
+            .id(id)
+            .frame(egui::Frame::NONE)
+            .code_editor()
+            .desired_width(f32::INFINITY)
+            // So that a click below the text is one behind its end.
+            .desired_rows((height / row - 1.0).max(8.0) as usize)
+            .layouter(&mut layouter);
+        let output = edit.show(ui);
+        ui.ctx().accesskit_node_builder(id, |node| node.set_label("the scene's text"));
+        output
+    }
+
+    /// Records the cursor and what was typed.
+    fn take_edit(&mut self, output: &TextEditOutput, text: &str, session: &mut Session) {
+        let before = self.cursor;
+        self.cursor = output.cursor_range.map(|range| byte_of(text, range.primary.index.0));
+        if let Some(range) = output.cursor_range {
+            let [from, to] = range.sorted_cursors();
+            self.selected = byte_of(text, from.index.0)..byte_of(text, to.index.0);
+        }
+        if output.response.changed() {
+            let text = with_line_endings_of(session.shown_text(), text.to_owned());
+            session.edit_shown(|draft| draft.set_text(&text));
+            self.list.typing = true;
+        } else if self.cursor != before {
+            self.list.typing = false;
+        }
+    }
+
+    /// Describes what is under the pointer, and follows a click with Ctrl to its declaration.
+    fn point_at(
+        &mut self,
+        ui: &Ui,
+        output: &TextEditOutput,
+        (text, found): (&str, &[ShownDiagnostic]),
+        session: &mut Session,
+    ) {
+        let response = &output.response.response;
+        let Some(pointer) = response.hover_pos() else { return };
+        let at = output.galley.cursor_from_pos(pointer - output.galley_pos);
+        let at = byte_of(text, at.index.0);
+        if ui.input(|input| input.modifiers.command) && jumps::target(session, at).is_some() {
+            ui.ctx().set_cursor_icon(egui::CursorIcon::PointingHand);
+            if response.clicked() {
+                self.jumps.to_definition(session, at, at);
+            }
+        } else {
+            describe(response, session, found, at);
+        }
+    }
+
+    /// F12 goes to a declaration, Alt + Left back. These work in the whole panel.
+    fn handle_jump_keys(&mut self, ui: &Ui, session: &mut Session) {
+        let is_elsewhere = ui.ctx().text_edit_focused() && self.cursor.is_none();
+        if is_elsewhere {
+            return;
+        }
+        let pressed = |modifiers, key| ui.input_mut(|input| input.consume_key(modifiers, key));
+        if pressed(Modifiers::NONE, Key::F12) {
+            self.go_to_definition(session);
+        }
+        if pressed(Modifiers::ALT, Key::ArrowLeft) {
+            self.go_back(session);
+        }
+    }
+
+    /// Shows the file that was chosen, and the range that a jump leads to.
+    fn follow_shown_file(&mut self, ui: &Ui, session: &mut Session) {
+        if self.file != *session.shown_file() {
+            self.file = session.shown_file().clone();
+            (self.list, self.cursor, self.selected) = (CompletionList::default(), None, 0..0);
+            self.color = ColorButton::default();
+        }
+        if let Some(range) = self.jumps.take_target(&self.file) {
+            let text = session.shown_text();
+            let range = range.start.min(text.len())..range.end.min(text.len());
+            select(ui.ctx(), editor_id(&self.file), text, range.clone());
+            self.selected = range.clone();
+            self.scroll = Some(range);
+        }
+    }
+
+    /// Handles the keys that the editor would use for something else. Returns true if it has the
+    /// keyboard.
+    fn handle_keys(&mut self, ui: &Ui, id: Id, session: &mut Session) -> bool {
+        for (key, replaces) in [(Key::F, false), (Key::H, true)] {
+            if ui.input_mut(|input| input.consume_key(Modifiers::COMMAND, key)) {
+                self.search(replaces, session);
+            }
+        }
+        // egui takes the keyboard away before this sees the key.
+        if self.cursor.is_some() && self.list.close_by_key(ui) {
+            ui.memory_mut(|memory| memory.request_focus(id));
+        }
+        if !ui.memory(|memory| memory.has_focus(id)) {
+            return false;
+        }
+        let accepted = {
+            let items = self.items(session);
+            self.list.accept_by_key(ui, &items).cloned()
+        };
+        if let Some(completion) = accepted {
+            self.insert(ui, id, &completion, session);
+        }
+        // Tab would move the focus.
+        ui.input_mut(|input| {
+            if input.consume_key(Modifiers::NONE, Key::Tab) {
+                input.events.push(Event::Text(INDENT.to_owned()));
+            }
+        });
+        true
+    }
+
+    /// Shows the bar of the search, and does what it asks for.
+    fn find_and_replace(&mut self, ui: &mut Ui, id: Id, session: &mut Session) {
+        let is_editable = session.shown_draft().is_some();
+        match self.find.show(ui, session.shown_text(), self.selected.start, is_editable) {
+            None => {}
+            Some(FindRequest::Show(range)) => self.scroll = Some(range),
+            Some(FindRequest::Replace(text, range)) => {
+                record_change(ui.ctx(), id, [session.shown_text(), &text], range.clone());
+                session.edit_shown(|draft| draft.set_text(&text));
+                self.scroll = Some(range);
+            }
+            Some(FindRequest::Leave(range)) => {
+                let range = range.unwrap_or_else(|| self.selected.clone());
+                select(ui.ctx(), id, session.shown_text(), range);
+            }
+        }
+    }
+
+    /// The completions at the cursor.
+    fn items<'s>(&self, session: &'s Session) -> Vec<&'s Completion> {
+        let answer = session.answer_about_text().zip(self.cursor);
+        answer.map(|(it, cursor)| matching(it, session.shown_text(), cursor)).unwrap_or_default()
+    }
+
+    fn show_list(&mut self, ui: &Ui, id: Id, at: egui::Pos2, session: &mut Session) {
+        let clicked = {
+            let items = self.items(session);
+            self.list.show(ui, at, &items).cloned()
+        };
+        if let Some(completion) = clicked {
+            self.insert(ui, id, &completion, session);
+        }
+    }
+
+    /// Inserts a completion and selects its first gap.
+    fn insert(&mut self, ui: &Ui, id: Id, completion: &Completion, session: &mut Session) {
+        let (insert, gap) = inserted(completion);
+        let mut text = session.shown_text().to_string();
+        let start = completion.replace.start;
+        if text.get(completion.replace.clone()).is_none() {
+            return;
+        }
+        text.replace_range(completion.replace.clone(), &insert);
+        let selected = start + gap.start..start + gap.end;
+        record_change(ui.ctx(), id, [session.shown_text(), &text], selected);
+        session.edit_shown(|draft| draft.set_text(&text));
+        self.list.typing = false;
+        ui.memory_mut(|memory| memory.request_focus(id));
+    }
+}
+
+/// An edited text with the line endings of the text before. The editor inserts `\n`, and lets the
+/// cursor stand between `\r` and `\n`.
+fn with_line_endings_of(before: &str, edited: String) -> String {
+    if before.contains("\r\n") { edited.replace('\r', "").replace('\n', "\r\n") } else { edited }
+}
+
+/// Paints a number in front of each visible line.
+fn line_numbers(ui: &Ui, galley: &Galley, at: egui::Pos2) {
+    let font = egui::TextStyle::Monospace.resolve(ui.style());
+    let color = theme::of(ui).weak.gamma_multiply(0.6);
+    let clip = ui.clip_rect();
+    for (index, row) in galley.rows.iter().enumerate() {
+        let row = row.rect().translate(at.to_vec2());
+        if row.bottom() >= clip.top() && row.top() <= clip.bottom() {
+            let position = egui::pos2(at.x - 12.0, row.center().y);
+            let number = (index + 1).to_string();
+            let align = egui::Align2::RIGHT_CENTER;
+            ui.painter().text(position, align, number, font.clone(), color);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_edited_text_keeps_its_line_endings() {
+        let of = |before, edited: &str| with_line_endings_of(before, edited.to_owned());
+        assert_eq!(of("a\r\nb\r\n", "a\rc\n\nb\r\n"), "ac\r\n\r\nb\r\n");
+        assert_eq!(of("a\nb\n", "a\nc\nb\n"), "a\nc\nb\n");
+    }
+}
