@@ -9,6 +9,7 @@ use eframe::egui::{
 use glam::DVec3;
 use sdfc_render::{CAPPED, HIT};
 
+use super::shape_outline::ShapeOutline;
 use super::theme::{self, card};
 use super::{axes_overlay, legend_card};
 use crate::render::picture::Picture;
@@ -31,6 +32,7 @@ pub struct Canvas {
     /// The session's picture count when the texture was made.
     shown: u64,
     last_wheel: Option<Instant>,
+    outline: ShapeOutline,
 }
 
 impl Canvas {
@@ -47,6 +49,7 @@ impl Canvas {
         } else {
             waiting(ui, rect, session);
         }
+        self.outline.show(ui, [rect, shown], session);
         if let Some(picture) = session.picture.as_deref().filter(|_| session.show_axes) {
             axes_overlay::show(ui, shown, picture);
         }

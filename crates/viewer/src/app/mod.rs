@@ -21,6 +21,7 @@ mod param_sliders;
 mod path_dialog;
 mod root;
 mod scene_menu;
+mod shape_outline;
 mod shortcuts;
 mod status_bar;
 mod theme;

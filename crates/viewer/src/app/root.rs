@@ -68,6 +68,7 @@ impl App {
         let shared = Arc::clone(&context);
         let wake = move || current_context(&shared).request_repaint();
         let mut session = Session::open(path, Arc::new(wake))?;
+        session.format_on_save = settings.format_on_save;
         restore(&settings, settings_path.as_deref(), &mut session);
         Ok(Self {
             session,
@@ -94,6 +95,7 @@ impl App {
         apply_theme(ctx, &self.settings);
         // Textures were lost with the device.
         self.canvas = Canvas::default();
+        self.code_editor.move_to_window();
         let mut context = self.context.lock().unwrap_or_else(PoisonError::into_inner);
         code::move_editors(&context, ctx, &self.session.tabs());
         *context = ctx.clone();
@@ -175,6 +177,8 @@ impl App {
             let state = (&mut self.code_mode, &mut self.code_editor);
             panel.show(ui, |ui| code_panel::show(ui, session, state, &mut actions));
         }
+        let lit = self.code_editor.lit_position(&self.session).filter(|_| self.panels.code);
+        self.session.light_shapes(lit);
         let center = egui::CentralPanel::no_frame();
         center.show(ui, |ui| {
             if let Some(clicked) = self.canvas.show(ui, &mut self.session) {
@@ -288,8 +292,9 @@ impl App {
     /// Stores the settings, together with what other windows have stored meanwhile.
     pub fn store_settings(&mut self, ctx: &Context) {
         let Some(path) = self.settings_path.clone() else { return };
-        let mut settings = Settings { light: self.settings.light, ..Settings::read(&path) };
         let session = &self.session;
+        let (light, format_on_save) = (self.settings.light, session.format_on_save);
+        let mut settings = Settings { light, format_on_save, ..Settings::read(&path) };
         let params = session.param_values.params.clone();
         settings.record(session.path(), session.manual_camera(), params);
         let size = ctx.input(|input| input.viewport().inner_rect.map(|rect| rect.size().into()));

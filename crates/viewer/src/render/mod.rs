@@ -3,5 +3,6 @@
 pub mod pacing;
 pub mod picture;
 pub mod pixel_info;
+pub mod shape_mask;
 pub mod view_painter;
 pub mod worker;

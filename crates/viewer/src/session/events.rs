@@ -33,7 +33,8 @@ impl Session {
             self.language = Some(answer);
             changed = true;
         }
-        changed | self.accuracy.poll()
+        changed |= self.entry_pictures.poll();
+        changed | self.lit_shapes.poll() | self.accuracy.poll()
     }
 
     fn handle_compile_event(&mut self, event: CompileEvent) {

@@ -4,6 +4,7 @@ mod camera_control;
 pub mod clock;
 pub mod draft;
 mod events;
+mod lit_shapes;
 pub mod orbit_camera;
 pub mod save_state;
 mod saving;
@@ -26,15 +27,18 @@ use crate::compile::request::{BuildRequest, CompileEvent};
 use crate::compile::worker::CompileWorker;
 use crate::export::exporter::ExportOutcome;
 use crate::export::worker::ExportWorker;
+use crate::language::entry_pictures::EntryPictures;
 use crate::language::worker::{LanguageAnswer, LanguageRequest, LanguageWorker};
 use crate::render::picture::{Picture, RenderEvent, RenderRequest};
 use crate::render::pixel_info::PixelInfo;
+use crate::render::shape_mask::MaskWorker;
 use crate::render::worker::RenderWorker;
 use crate::scene::document::{TextsByPath, folders_of, path_of};
 use crate::scene::model::Model;
 use crate::scene::param_values::ParamValues;
 use crate::session::clock::Clock;
 use crate::session::draft::Draft;
+use crate::session::lit_shapes::LitShapes;
 use crate::session::orbit_camera::{CameraState, OrbitCamera};
 use crate::session::save_state::Saving;
 use crate::session::tabs::Tabs;
@@ -62,6 +66,10 @@ pub struct Session {
     language_request: Option<LanguageRequest>,
     /// The last answer of the language service, which may be about an earlier text.
     pub language: Option<LanguageAnswer>,
+    /// Pictures of library entries.
+    pub entry_pictures: EntryPictures,
+    /// True if a text is formatted when it is saved.
+    pub format_on_save: bool,
     watcher: FileWatcher,
     /// The request that a change on disk repeats, shared with the watcher's thread.
     repeated_build: Arc<Mutex<BuildRequest>>,
@@ -109,6 +117,7 @@ pub struct Session {
     pub building: bool,
     /// The last picture.
     pub picture: Option<Box<Picture>>,
+    lit_shapes: LitShapes,
     /// The number of pictures received.
     pub picture_count: u64,
     /// Messages for the status line; the window takes them out.
@@ -143,6 +152,11 @@ impl Session {
         let (sender, language_answers) = channel();
         let wake_window = Arc::clone(&wake);
         let language_worker = LanguageWorker::new(sender, move || wake_window())?;
+        let (sender, masks) = channel();
+        let wake_window = Arc::clone(&wake);
+        let lit_shapes = LitShapes::new(MaskWorker::new(sender, move || wake_window())?, masks);
+        let wake_window = Arc::clone(&wake);
+        let entry_pictures = EntryPictures::new(move || wake_window())?;
         let accuracy = AccuracyChecks::new(move || wake())?;
         let repeated_build = Arc::new(Mutex::new(build.clone()));
         let (requests, repeated) = (compile_worker.requests(), Arc::clone(&repeated_build));
@@ -159,6 +173,8 @@ impl Session {
             language_answers,
             language_request: None,
             language: None,
+            entry_pictures,
+            format_on_save: false,
             watcher,
             repeated_build,
             camera: None,
@@ -183,6 +199,7 @@ impl Session {
             render_error: None,
             building: false,
             picture: None,
+            lit_shapes,
             picture_count: 0,
             messages: Vec::new(),
             accuracy,

@@ -7,6 +7,7 @@ use std::sync::Arc;
 use super::Session;
 use crate::export::exporter::{ExportJob, ExportOutcome};
 use crate::scene::document::path_of;
+use crate::scene::line_endings::formatted;
 use crate::scene::model::Model;
 use crate::scene::param_source::with_param_defaults;
 use crate::scene::rebase::{pair_numbers, rebase_numbers};
@@ -66,7 +67,7 @@ impl Session {
             return self.fail_saving(format!("{name}: {CONFLICT}"));
         }
         let [before, text] = [draft.base(), draft.text()].map(Arc::clone);
-        let after = Arc::clone(&text);
+        let after: Arc<str> = self.formatted_to_save(text.to_string()).into();
         let path = path_of(self.path(), name);
         let job = [before.to_string(), after.to_string()];
         self.saving.failure = None;
@@ -105,7 +106,14 @@ impl Session {
                 Err(_) => {}
             }
         }
+        let after = self.formatted_to_save(after);
         Ok(Edited { before, text, after, params })
+    }
+
+    /// The text as it is saved: formatted, if the user wants that and it has no syntax errors.
+    fn formatted_to_save(&self, text: String) -> String {
+        let formatted = self.format_on_save.then(|| formatted(&text)).flatten();
+        formatted.unwrap_or(text)
     }
 
     fn fail_saving(&mut self, why: String) {

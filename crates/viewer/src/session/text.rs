@@ -45,8 +45,17 @@ impl Session {
         let picture = self.picture.as_deref()?;
         let (name, range) = PixelInfo::at(picture, position)?.call?;
         let file = self.file_named(&name);
-        let compiled = text_in_model(&picture.request.model, &file)?;
+        let compiled = self.compiled_text(&picture.request.model, &file)?;
         (*compiled == **self.text_of(&file)?).then_some((file, range))
+    }
+
+    /// The text of a file that was compiled to a model; `None` for a file of the library.
+    pub(super) fn compiled_text<'m>(&self, model: &'m Model, file: &TabFile) -> Option<&'m str> {
+        match file {
+            TabFile::Scene => Some(&model.source),
+            TabFile::Import(path) => model.import_text(path),
+            TabFile::Library(_) => None,
+        }
     }
 
     /// Asks the language service about the shown text, unless it was asked the same last.
@@ -110,14 +119,5 @@ impl Session {
         self.edit_file(&file, |draft| draft.set_text(&text));
         self.show_file(file);
         true
-    }
-}
-
-/// The text of a file that was compiled to a model; `None` for a file of the library.
-fn text_in_model<'m>(model: &'m Model, file: &TabFile) -> Option<&'m str> {
-    match file {
-        TabFile::Scene => Some(&model.source),
-        TabFile::Import(path) => model.import_text(path),
-        TabFile::Library(_) => None,
     }
 }

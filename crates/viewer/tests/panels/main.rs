@@ -4,6 +4,7 @@
 
 mod find;
 mod fixture;
+mod lit_shapes;
 mod tabs;
 mod unsaved;
 

@@ -12,12 +12,14 @@ use super::color_button::ColorButton;
 use super::completion_list::CompletionList;
 use super::find_bar::{FindBar, FindRequest};
 use super::highlighting::{Decorations, Mark, highlighted, roles};
-use super::hover_text::describe;
+use super::hover_text::HoverPictures;
 use super::jumps::{self, Jumps};
+use super::number_drag::NumberDrag;
 use super::text_state::{byte_of, cursor_at, editor_id, record_change, select};
 use crate::app::theme;
 use crate::compile::diagnostics::ShownDiagnostic;
 use crate::language::completions::{inserted, matching};
+use crate::scene::line_endings::{formatted, with_line_endings_of};
 use crate::session::Session;
 use crate::session::tabs::TabFile;
 
@@ -35,6 +37,8 @@ pub struct CodeEditor {
     find: FindBar,
     jumps: Jumps,
     color: ColorButton,
+    drag: NumberDrag,
+    pictures: HoverPictures,
     /// The cursor of the last frame as a byte offset, while the editor has the keyboard.
     cursor: Option<usize>,
     /// The selection of the last frame in which the editor had the keyboard, in bytes.
@@ -53,6 +57,15 @@ impl CodeEditor {
             self.scroll = Some(range.clone());
             Some((range, Arc::clone(session.shown_text())))
         });
+    }
+
+    /// The position in the code whose shapes are lit in the picture: the cursor while the editor
+    /// has the keyboard, else the code of the shape that was clicked.
+    pub fn lit_position(&self, session: &Session) -> Option<(TabFile, usize)> {
+        let is_lit = |(_, text): &&(Range<usize>, Arc<str>)| text == session.shown_text();
+        let clicked = || self.lit.as_ref().filter(is_lit).map(|(range, _)| range.start);
+        let offset = self.cursor.or_else(clicked)?;
+        (self.file == *session.shown_file()).then(|| (self.file.clone(), offset))
     }
 
     /// Shows a button with the colour at the cursor, which changes it in the text.
@@ -178,6 +191,25 @@ impl CodeEditor {
         }
     }
 
+    /// Forgets what was lost with a window.
+    pub fn move_to_window(&mut self) {
+        self.pictures = HoverPictures::default();
+    }
+
+    /// Formats the shown text.
+    pub fn format(&mut self, ctx: &egui::Context, session: &mut Session) {
+        let before = Arc::clone(session.shown_text());
+        match formatted(&before) {
+            Some(after) if session.shown_draft().is_some() => {
+                let at = self.selected.start.min(after.len());
+                record_change(ctx, editor_id(&self.file), [&before, &after], at..at);
+                session.edit_shown(|draft| draft.set_text(&after));
+            }
+            Some(_) => {}
+            None => session.messages.push("a text with syntax errors is not formatted".to_owned()),
+        }
+    }
+
     /// Describes what is under the pointer, and follows a click with Ctrl to its declaration.
     fn point_at(
         &mut self,
@@ -187,16 +219,25 @@ impl CodeEditor {
         session: &mut Session,
     ) {
         let response = &output.response.response;
-        let Some(pointer) = response.hover_pos() else { return };
-        let at = output.galley.cursor_from_pos(pointer - output.galley_pos);
-        let at = byte_of(text, at.index.0);
+        let offset = |at: egui::Pos2| {
+            byte_of(text, output.galley.cursor_from_pos(at - output.galley_pos).index.0)
+        };
+        let pointer = ui.input(|input| input.pointer.hover_pos());
+        let at = pointer.filter(|at| response.interact_rect.contains(*at)).map(offset);
+        let galley = (&*output.galley, output.galley_pos);
+        if *text == **session.shown_text()
+            && self.drag.show(ui, editor_id(&self.file), galley, session, at)
+        {
+            return;
+        }
+        let Some(at) = response.hover_pos().map(offset) else { return };
         if ui.input(|input| input.modifiers.command) && jumps::target(session, at).is_some() {
             ui.ctx().set_cursor_icon(egui::CursorIcon::PointingHand);
             if response.clicked() {
                 self.jumps.to_definition(session, at, at);
             }
         } else {
-            describe(response, session, found, at);
+            self.pictures.describe(response, session, found, at);
         }
     }
 
@@ -313,12 +354,6 @@ impl CodeEditor {
     }
 }
 
-/// An edited text with the line endings of the text before. The editor inserts `\n`, and lets the
-/// cursor stand between `\r` and `\n`.
-fn with_line_endings_of(before: &str, edited: String) -> String {
-    if before.contains("\r\n") { edited.replace('\r', "").replace('\n', "\r\n") } else { edited }
-}
-
 /// Paints a number in front of each visible line.
 fn line_numbers(ui: &Ui, galley: &Galley, at: egui::Pos2) {
     let font = egui::TextStyle::Monospace.resolve(ui.style());
@@ -332,17 +367,5 @@ fn line_numbers(ui: &Ui, galley: &Galley, at: egui::Pos2) {
             let align = egui::Align2::RIGHT_CENTER;
             ui.painter().text(position, align, number, font.clone(), color);
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn an_edited_text_keeps_its_line_endings() {
-        let of = |before, edited: &str| with_line_endings_of(before, edited.to_owned());
-        assert_eq!(of("a\r\nb\r\n", "a\rc\n\nb\r\n"), "ac\r\n\r\nb\r\n");
-        assert_eq!(of("a\nb\n", "a\nc\nb\n"), "a\nc\nb\n");
     }
 }

@@ -7,6 +7,8 @@ mod find_bar;
 mod highlighting;
 mod hover_text;
 mod jumps;
+mod menu;
+mod number_drag;
 mod numbers;
 pub mod panel;
 mod tab_bar;

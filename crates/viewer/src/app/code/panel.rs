@@ -3,7 +3,7 @@
 use eframe::egui::{RichText, Ui};
 
 use super::editor::CodeEditor;
-use super::{numbers, tab_bar};
+use super::{menu, numbers, tab_bar};
 use crate::app::action::Action;
 use crate::app::{number_buttons, theme};
 use crate::session::Session;
@@ -54,6 +54,7 @@ pub fn show(
             session.write_numbers_into_text();
         }
         if *mode == CodeMode::Edit && is_small {
+            menu::show(ui, session, editor);
             editor.color_button(ui, session);
         }
         edited_state(ui, session);
