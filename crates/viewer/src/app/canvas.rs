@@ -9,6 +9,7 @@ use eframe::egui::{
 use glam::DVec3;
 use sdfc_render::{CAPPED, HIT};
 
+use super::handle_overlay::HandleOverlay;
 use super::shape_outline::ShapeOutline;
 use super::theme::{self, card};
 use super::{axes_overlay, legend_card};
@@ -33,6 +34,8 @@ pub struct Canvas {
     shown: u64,
     last_wheel: Option<Instant>,
     outline: ShapeOutline,
+    handles: HandleOverlay,
+    rect: Option<Rect>,
 }
 
 impl Canvas {
@@ -40,6 +43,7 @@ impl Canvas {
     /// Returns the position that was clicked, as fractions of the picture.
     pub fn show(&mut self, ui: &mut Ui, session: &mut Session) -> Option<[f64; 2]> {
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
+        self.rect = Some(rect);
         ui.painter().rect_filled(rect, 0.0, theme::of(ui).ground);
         self.refresh(ui, session);
         let shown = session.picture.as_ref().map_or(rect, |it| shown_at(rect, it.request.size));
@@ -75,8 +79,17 @@ impl Canvas {
             legend_card::show(ui, rect, &picture.legend);
         }
         pixel_info(ui, &response, [rect, shown], session);
+        self.handles.show(ui, [rect, shown], session);
         let clicked = response.interact_pointer_pos().filter(|_| response.clicked());
+        if clicked.is_some() {
+            session.handles.selected = None;
+        }
         clicked.map(|at| fractions(shown, at))
+    }
+
+    /// Where the picture was shown in the last frame.
+    pub fn rect(&self) -> Rect {
+        self.rect.unwrap_or(Rect::ZERO)
     }
 
     /// Uploads a new picture to the window's texture.

@@ -10,6 +10,7 @@ mod controls;
 mod diagnostics_overlay;
 mod export_dialog;
 mod external_editor;
+mod handle_overlay;
 mod help;
 mod legend_card;
 mod missing_file;

@@ -135,6 +135,11 @@ impl App {
         &mut self.session
     }
 
+    /// Where the window shows the picture.
+    pub fn picture_rect(&self) -> egui::Rect {
+        self.canvas.rect()
+    }
+
     /// Returns true if no finer picture follows.
     pub fn picture_is_finished(&self) -> bool {
         self.session.picture.as_ref().is_some_and(|picture| picture.finished)
@@ -162,6 +167,7 @@ impl App {
         let message = self.message.as_ref().map(|(text, _)| text.as_str());
         let line = egui::Panel::bottom("status").frame(bar_frame(ui));
         line.show(ui, |ui| status_bar::show(ui, &mut self.session, message));
+        self.session.handles.hovered = None;
         self.panels.keep_room_for_picture(ui.available_width());
         let most = (ui.available_width() - MIN_PICTURE).max(220.0);
         if self.panels.controls {
@@ -178,6 +184,7 @@ impl App {
             panel.show(ui, |ui| code_panel::show(ui, session, state, &mut actions));
         }
         let lit = self.code_editor.lit_position(&self.session).filter(|_| self.panels.code);
+        self.session.select_handles(lit.as_ref());
         self.session.light_shapes(lit);
         let center = egui::CentralPanel::no_frame();
         center.show(ui, |ui| {

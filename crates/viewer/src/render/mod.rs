@@ -1,5 +1,6 @@
 //! The thread that draws the picture, and information about single pixels.
 
+pub mod handles;
 pub mod pacing;
 pub mod picture;
 pub mod pixel_info;

@@ -33,7 +33,7 @@ impl Session {
             self.language = Some(answer);
             changed = true;
         }
-        changed |= self.entry_pictures.poll();
+        changed |= self.entry_pictures.poll() | self.handles.poll();
         changed | self.lit_shapes.poll() | self.accuracy.poll()
     }
 

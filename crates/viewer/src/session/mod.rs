@@ -4,6 +4,7 @@ mod camera_control;
 pub mod clock;
 pub mod draft;
 mod events;
+pub mod handles;
 mod lit_shapes;
 pub mod orbit_camera;
 pub mod save_state;
@@ -29,6 +30,7 @@ use crate::export::exporter::ExportOutcome;
 use crate::export::worker::ExportWorker;
 use crate::language::entry_pictures::EntryPictures;
 use crate::language::worker::{LanguageAnswer, LanguageRequest, LanguageWorker};
+use crate::render::handles::HandleWorker;
 use crate::render::picture::{Picture, RenderEvent, RenderRequest};
 use crate::render::pixel_info::PixelInfo;
 use crate::render::shape_mask::MaskWorker;
@@ -38,6 +40,7 @@ use crate::scene::model::Model;
 use crate::scene::param_values::ParamValues;
 use crate::session::clock::Clock;
 use crate::session::draft::Draft;
+use crate::session::handles::ValueHandles;
 use crate::session::lit_shapes::LitShapes;
 use crate::session::orbit_camera::{CameraState, OrbitCamera};
 use crate::session::save_state::Saving;
@@ -118,6 +121,8 @@ pub struct Session {
     /// The last picture.
     pub picture: Option<Box<Picture>>,
     lit_shapes: LitShapes,
+    /// Handles in the picture.
+    pub handles: ValueHandles,
     /// The number of pictures received.
     pub picture_count: u64,
     /// Messages for the status line; the window takes them out.
@@ -155,6 +160,9 @@ impl Session {
         let (sender, masks) = channel();
         let wake_window = Arc::clone(&wake);
         let lit_shapes = LitShapes::new(MaskWorker::new(sender, move || wake_window())?, masks);
+        let (sender, answers) = channel();
+        let wake_window = Arc::clone(&wake);
+        let handles = ValueHandles::new(HandleWorker::new(sender, move || wake_window())?, answers);
         let wake_window = Arc::clone(&wake);
         let entry_pictures = EntryPictures::new(move || wake_window())?;
         let accuracy = AccuracyChecks::new(move || wake())?;
@@ -200,6 +208,7 @@ impl Session {
             building: false,
             picture: None,
             lit_shapes,
+            handles,
             picture_count: 0,
             messages: Vec::new(),
             accuracy,

@@ -2,8 +2,10 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+mod commands;
 mod find;
 mod fixture;
+mod handles;
 mod lit_shapes;
 mod tabs;
 mod unsaved;

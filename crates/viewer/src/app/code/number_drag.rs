@@ -89,6 +89,8 @@ impl NumberDrag {
         let after = session.shown_text();
         if *dragged.before != **after {
             record_change(ctx, id, [&dragged.before, after], dragged.range);
+            // So that Ctrl + Z undoes it.
+            ctx.memory_mut(|memory| memory.request_focus(id));
         }
     }
 }

@@ -1,0 +1,142 @@
+//! Handles in the picture for the values that are selected in a panel.
+
+use std::sync::Arc;
+use std::sync::mpsc::Receiver;
+
+use super::Session;
+use crate::render::handles::{Handle, HandleRequest, HandleWorker, Handles};
+use crate::scene::handle_values::{HandleValue, LiveParam, values_at};
+use crate::session::tabs::TabFile;
+
+/// The selected values, and their handles.
+#[derive(Debug)]
+pub struct ValueHandles {
+    /// The param under the pointer.
+    pub hovered: Option<String>,
+    /// The param that was chosen last.
+    pub selected: Option<String>,
+    /// True while a handle is dragged.
+    pub is_dragged: bool,
+    worker: HandleWorker,
+    answers: Receiver<Handles>,
+    asked: Option<HandleRequest>,
+    answer: Option<Handles>,
+    values: Vec<HandleValue>,
+    /// The values when the handles were asked for.
+    start: Vec<f64>,
+    /// The position and the model that the values were looked up for.
+    looked_at: Option<(usize, u64)>,
+    at_cursor: Vec<HandleValue>,
+}
+
+impl ValueHandles {
+    /// Nothing is selected.
+    pub fn new(worker: HandleWorker, answers: Receiver<Handles>) -> Self {
+        Self {
+            hovered: None,
+            selected: None,
+            is_dragged: false,
+            worker,
+            answers,
+            asked: None,
+            answer: None,
+            values: Vec::new(),
+            start: Vec::new(),
+            looked_at: None,
+            at_cursor: Vec::new(),
+        }
+    }
+
+    /// Receives answers. Returns true if there are any.
+    pub fn poll(&mut self) -> bool {
+        let Some(answer) = self.answers.try_iter().last() else { return false };
+        self.answer = Some(answer);
+        true
+    }
+}
+
+/// A value with its handle.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ValueHandle {
+    /// The value.
+    pub value: HandleValue,
+    /// The current number.
+    pub number: f64,
+    /// The handle where it is for that number.
+    pub handle: Handle,
+}
+
+impl Session {
+    /// Asks for the handles of the param under the pointer, else of the chosen one, else of the
+    /// values at the cursor.
+    pub fn select_handles(&mut self, cursor: Option<&(TabFile, usize)>) {
+        let Some(model) = self.model.clone() else { return };
+        if self.handles.is_dragged {
+            return;
+        }
+        let is_scene = *model.source == **self.text();
+        let offset = cursor.filter(|(file, _)| is_scene && *file == TabFile::Scene);
+        let looked_at = offset.map(|(_, offset)| (*offset, model.serial));
+        let handles = &mut self.handles;
+        if handles.looked_at != looked_at {
+            handles.at_cursor = looked_at.map_or(Vec::new(), |(at, _)| values_at(&model, at));
+            // The cursor was moved after the param was chosen.
+            handles.selected = handles.selected.take().filter(|_| looked_at.is_none());
+            handles.looked_at = looked_at;
+        }
+        let named = handles.hovered.as_ref().or(handles.selected.as_ref());
+        let values = match named {
+            Some(name) => vec![HandleValue::Param(name.clone())],
+            None => handles.at_cursor.clone(),
+        };
+        let live: Option<Vec<LiveParam>> =
+            values.iter().map(|value| value.live_param(&model)).collect();
+        let Some(live) = live.filter(|live| !live.is_empty()) else {
+            (handles.asked, handles.answer) = (None, None);
+            return;
+        };
+        let picture = self.picture.as_deref().filter(|picture| {
+            !picture.request.moving && picture.request.model.serial == model.serial
+        });
+        let Some(asked) = picture.map(|picture| HandleRequest::new(picture, live)) else { return };
+        if handles.asked.as_ref().is_some_and(|last| last.is_same(&asked)) {
+            return;
+        }
+        let now = |value: &HandleValue| value.get(&model, &self.param_values).unwrap_or_default();
+        handles.start = values.iter().map(now).collect();
+        handles.values = values;
+        handles.asked = Some(asked.clone());
+        handles.worker.send(asked);
+    }
+
+    /// The handles of the selected values, for those that move something that is seen.
+    pub fn value_handles(&self) -> Vec<ValueHandle> {
+        let ValueHandles { asked, answer, values, start, .. } = &self.handles;
+        let (Some(asked), Some(answer), Some(model)) = (asked, answer, &self.model) else {
+            return Vec::new();
+        };
+        let is_model = Arc::ptr_eq(&answer.request.request.model, model);
+        if !is_model || !answer.request.has_same_params(asked) {
+            return Vec::new();
+        }
+        let mut found = Vec::new();
+        for ((value, start), handle) in values.iter().zip(start).zip(&answer.handles) {
+            let number = value.get(model, &self.param_values);
+            if let (Some(number), Some(handle)) = (number, handle) {
+                let origin = handle.origin + handle.motion * (number - start);
+                let handle = Handle { origin, ..*handle };
+                found.push(ValueHandle { value: value.clone(), number, handle });
+            }
+        }
+        found
+    }
+
+    /// Changes a value as its slider does.
+    pub fn set_value(&mut self, value: &HandleValue, number: f64) {
+        if let Some(model) = self.model.clone()
+            && number.is_finite()
+        {
+            value.set(&model, &mut self.param_values, number);
+        }
+    }
+}
