@@ -149,17 +149,19 @@ fn row(
         let label = ui.allocate_ui_with_layout(egui::vec2(84.0, 18.0), left, |ui| {
             ui.set_min_width(84.0);
             let name = RichText::new(name).color(color);
-            let label = egui::Label::new(name).truncate().sense(egui::Sense::click());
-            ui.add(label).on_hover_text(hint)
+            ui.add(egui::Label::new(name).truncate()).on_hover_text(hint).id
         });
+        let id = label.inner.with("name");
+        let chosen = ui.interact(label.response.rect, id, egui::Sense::click());
+        let chosen = chosen.on_hover_text(hint).clicked();
         // Room for the number and the button, so that the panel does not grow when a value changes.
         ui.spacing_mut().slider_width = (ui.available_width() - BESIDE_SLIDER).max(48.0);
-        widget(ui, RowLabel { id: label.inner.id, hint });
+        widget(ui, RowLabel { id: label.inner, hint });
         let button = egui::Button::new(RichText::new("reset").small()).frame(false);
         let is_reset = default.is_some_and(|text| {
             ui.add(button).on_hover_text(format!("Reset to {text}.")).clicked()
         });
-        (is_reset, label.inner.clicked())
+        (is_reset, chosen)
     });
     let (is_reset, is_chosen) = row.inner;
     let is_hovered = ui.rect_contains_pointer(row.response.rect);

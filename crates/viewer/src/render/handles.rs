@@ -26,7 +26,7 @@ const MIN_SPEED: f64 = 0.02;
 /// The fewest points that a translation is fitted to.
 const MIN_FITTED: usize = 6;
 /// The largest part of the squared speeds that a translation may leave unexplained.
-const MAX_UNEXPLAINED: f64 = 0.02;
+const MAX_UNEXPLAINED: f64 = 0.05;
 /// Keeps the fit defined if not all directions are seen, as a fraction of the matrix.
 const REGULARISATION: f64 = 1e-6;
 

@@ -3,6 +3,8 @@
 use std::sync::Arc;
 use std::sync::mpsc::Receiver;
 
+use glam::DVec3;
+
 use super::Session;
 use crate::render::handles::{Handle, HandleRequest, HandleWorker, Handles};
 use crate::scene::handle_values::{HandleValue, LiveParam, values_at};
@@ -119,14 +121,23 @@ impl Session {
         if !is_model || !answer.request.has_same_params(asked) {
             return Vec::new();
         }
+        let is_vector = answer.handles.len() == 3
+            && answer.handles.iter().all(|it| it.is_some_and(|it| it.is_translation));
+        // The arrows of a vector begin at one point, which all of its values move.
+        let common = answer.handles.first().copied().flatten().filter(|_| is_vector);
+        let mut moved = DVec3::ZERO;
         let mut found = Vec::new();
         for ((value, start), handle) in values.iter().zip(start).zip(&answer.handles) {
             let number = value.get(model, &self.param_values);
             if let (Some(number), Some(handle)) = (number, handle) {
-                let origin = handle.origin + handle.motion * (number - start);
-                let handle = Handle { origin, ..*handle };
+                let by = handle.motion * (number - start);
+                moved += by;
+                let handle = Handle { origin: handle.origin + by, ..*handle };
                 found.push(ValueHandle { value: value.clone(), number, handle });
             }
+        }
+        if let Some(common) = common {
+            found.iter_mut().for_each(|it| it.handle.origin = common.origin + moved);
         }
         found
     }

@@ -11,7 +11,7 @@ use sdfc_ide::Completion;
 use super::color_button::ColorButton;
 use super::completion_list::CompletionList;
 use super::find_bar::{FindBar, FindRequest};
-use super::highlighting::{Decorations, Mark, highlighted, roles};
+use super::highlighting::{LayoutCache, LayoutKey, Mark};
 use super::hover_text::HoverPictures;
 use super::jumps::{self, Jumps};
 use super::number_drag::NumberDrag;
@@ -39,6 +39,7 @@ pub struct CodeEditor {
     color: ColorButton,
     drag: NumberDrag,
     pictures: HoverPictures,
+    layout: LayoutCache,
     /// The cursor of the last frame as a byte offset, while the editor has the keyboard.
     cursor: Option<usize>,
     /// The selection of the last frame in which the editor had the keyboard, in bytes.
@@ -128,7 +129,7 @@ impl CodeEditor {
 
     /// Shows the text, and lets the user edit it unless it is that of a library file.
     fn text_edit(
-        &self,
+        &mut self,
         ui: &mut Ui,
         (id, height): (Id, f32),
         text: &mut String,
@@ -136,23 +137,25 @@ impl CodeEditor {
         found: &[ShownDiagnostic],
     ) -> TextEditOutput {
         let palette = theme::of(ui);
-        let marks: Vec<Mark> = found.iter().map(|found| Mark::of(found, palette)).collect();
         let file = self.file.name(session.path());
         let answer = session.language.as_ref().filter(|it| it.request.file == file);
-        let roles = roles(answer, text);
         let lit = self.lit.as_ref().filter(|(_, of)| of == session.shown_text());
         let (matches, current) = self.find.marked(session.shown_text());
-        let decorations = Decorations {
-            roles: &roles,
-            marks: &marks,
-            lit: lit.map(|(range, _)| range),
-            found: &matches,
-            current: current.as_ref(),
+        let mut key = LayoutKey {
+            text: String::new(),
+            roles: answer.map(|it| (Arc::clone(&it.request.text), Arc::clone(&it.tokens))),
+            marks: found.iter().map(|found| Mark::of(found, palette)).collect(),
+            lit: lit.map(|(range, _)| range.clone()),
+            found: matches,
+            current,
+            is_dark: ui.visuals().dark_mode,
+            font: egui::TextStyle::Monospace.resolve(ui.style()),
         };
-        let font = egui::TextStyle::Monospace.resolve(ui.style());
+        let cache = &mut self.layout;
         let row = ui.text_style_height(&egui::TextStyle::Monospace).max(1.0);
         let mut layouter = |ui: &Ui, text: &dyn TextBuffer, _: f32| -> Arc<Galley> {
-            let job = highlighted(text.as_str(), &decorations, palette, &font);
+            text.as_str().clone_into(&mut key.text);
+            let job = cache.layout(&key, palette);
             ui.fonts_mut(|fonts| fonts.layout_job(job))
         };
         let is_library = matches!(self.file, TabFile::Library(_));
