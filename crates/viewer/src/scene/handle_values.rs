@@ -136,7 +136,7 @@ mod tests {
             [at("-0.25"), at(" r, 3"), at("])")],
             [vector.clone(), vector.clone(), vector.clone()]
         );
-        assert_eq!(at("r).tr"), [param.clone()]);
+        assert_eq!(at("r).tr"), std::slice::from_ref(&param));
         assert_eq!(at("30deg"), [number("30deg")]);
         assert_eq!(at("n: int"), []);
         // The sign is part of the number, and a range is kept.

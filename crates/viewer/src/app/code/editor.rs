@@ -53,10 +53,10 @@ pub struct CodeEditor {
 impl CodeEditor {
     /// Lights the code of a shape, and scrolls to it.
     pub fn light(&mut self, code: Option<(TabFile, Range<usize>)>, session: &mut Session) {
-        self.lit = code.and_then(|(file, range)| {
+        self.lit = code.map(|(file, range)| {
             session.show_file(file);
             self.scroll = Some(range.clone());
-            Some((range, Arc::clone(session.shown_text())))
+            (range, Arc::clone(session.shown_text()))
         });
     }
 
@@ -83,7 +83,7 @@ impl CodeEditor {
     /// Goes to the declaration of the name at the cursor.
     pub fn go_to_definition(&mut self, session: &mut Session) {
         let from = self.selected.start;
-        self.jumps.to_definition(session, from, from);
+        self.jumps.go_to_definition(session, from, from);
     }
 
     /// Goes back to where the last jump began.
@@ -237,7 +237,7 @@ impl CodeEditor {
         if ui.input(|input| input.modifiers.command) && jumps::target(session, at).is_some() {
             ui.ctx().set_cursor_icon(egui::CursorIcon::PointingHand);
             if response.clicked() {
-                self.jumps.to_definition(session, at, at);
+                self.jumps.go_to_definition(session, at, at);
             }
         } else {
             self.pictures.describe(response, session, found, at);

@@ -20,7 +20,7 @@ pub struct Jumps {
 impl Jumps {
     /// Goes to the declaration of the name at an offset of the shown text. `from` is the offset to
     /// which [`back`](Self::back) returns.
-    pub fn to_definition(&mut self, session: &mut Session, offset: usize, from: usize) {
+    pub fn go_to_definition(&mut self, session: &mut Session, offset: usize, from: usize) {
         let Some(target) = target(session, offset) else {
             let text = "there is no name with a declaration at the cursor";
             return session.messages.push(text.to_owned());
