@@ -153,6 +153,8 @@ fn row(
         });
         let id = label.inner.with("name");
         let chosen = ui.interact(label.response.rect, id, egui::Sense::click());
+        let info = format!("choose {name}");
+        chosen.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &info));
         let chosen = chosen.on_hover_text(hint).clicked();
         // Room for the number and the button, so that the panel does not grow when a value changes.
         ui.spacing_mut().slider_width = (ui.available_width() - BESIDE_SLIDER).max(48.0);

@@ -104,7 +104,7 @@ mod tests {
     fn the_picture_of_a_declaration_in_the_library_is_drawn_once() {
         let (file, text) =
             library_files().iter().find(|(_, it)| it.contains("solid torus(")).unwrap();
-        let start = text.find("torus(").unwrap();
+        let start = text.find("solid torus(").unwrap() + "solid ".len();
         let location = Location { file: (*file).to_owned(), start, end: start + 5 };
         let entry = EntryId::at(&location).unwrap();
         assert_eq!(all_entries()[entry.0].name, "torus");

@@ -217,10 +217,14 @@ mod tests {
         Moving { point: normal, normal, ray: DVec3::NEG_Z, speed }
     }
 
-    /// Directions of a hemisphere.
+    /// The normals of a ball at the pixels that show it.
     fn normals() -> impl Iterator<Item = DVec3> {
-        let sides = (-4..=4).flat_map(|x| (-4..=4).map(move |y| (f64::from(x), f64::from(y))));
-        sides.map(|(x, y)| DVec3::new(x, y, 4.0).normalize())
+        let pixels = (-9..=9).flat_map(|x| (-9..=9).map(move |y| [x, y].map(f64::from)));
+        pixels.filter_map(|[x, y]| {
+            let [x, y] = [x / 10.0, y / 10.0];
+            let squared = 1.0 - x * x - y * y;
+            (squared > 0.0).then(|| DVec3::new(x, y, squared.sqrt()))
+        })
     }
 
     #[test]

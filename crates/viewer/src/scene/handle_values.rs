@@ -6,6 +6,9 @@ use sdfc_syntax::{Class, classes};
 use crate::scene::model::Model;
 use crate::scene::param_values::ParamValues;
 
+/// The most tokens between the brackets of a vector: three signs, three values, two commas.
+const MAX_INSIDE: usize = 8;
+
 /// A value of the scene that can be changed without compiling it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum HandleValue {
@@ -101,10 +104,11 @@ pub fn values_at(model: &Model, offset: usize) -> Vec<HandleValue> {
     };
     let before = tokens.partition_point(|(_, range)| range.end <= offset);
     let word = |index: usize| tokens.get(index).map_or("", |(_, range)| &text[range.clone()]);
-    // The elements are numbers with a sign, or names, so that the bracket is near.
-    let open = (before.saturating_sub(6)..=before).rev().find(|index| word(*index) == "[");
+    // `[-1, -2, -3]` has the most tokens.
+    let open =
+        (before.saturating_sub(MAX_INSIDE + 1)..=before).rev().find(|index| word(*index) == "[");
     if let Some(open) = open {
-        let close = (open..open + 9).find(|index| word(*index) == "]");
+        let close = (open..=open + MAX_INSIDE + 1).find(|index| word(*index) == "]");
         let inside = close.and_then(|close| tokens.get(open + 1..close));
         let is_around =
             close.and_then(|close| tokens.get(close)).is_some_and(|it| it.1.end >= offset);
@@ -126,7 +130,8 @@ mod tests {
     #[test]
     fn a_vector_of_three_values_is_changed_by_one_handle() {
         let text = "param r = 0.5 in 0.1..2\nparam n: int = 2\n\
-                    sphere(r).translate([-0.25, r, 3]).rotate([0, 1, 0], 30deg)\n";
+                    sphere(r).translate([-0.25, r, 3]).rotate(y: 30deg)\n\
+                    union(for i in 0..n: box(0.1).translate(x: i))\n";
         let model = model(text);
         let at = |found: &str| values_at(&model, text.find(found).unwrap());
         let number = |found: &str| HandleValue::Number(text.find(found).unwrap());
