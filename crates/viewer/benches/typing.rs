@@ -5,10 +5,10 @@
 //! cargo bench -p sdfc-viewer --bench typing
 //! ```
 //!
-//! A frame is what the window's thread does for it: the layout of all panels, and the triangles that
-//! the GPU then paints. `cpu` is the CPU time of that thread, which other work on the machine does
-//! not change. Every character changes
-//! the structure of the scene, so that the compiler, the driver and the language service are busy.
+//! A frame is the work of the window's thread: the layout of all panels, and the triangles that the
+//! GPU then paints. `cpu` is the CPU time of that thread, which other work on the machine does not
+//! change. Every character changes the structure of the scene, so that the compiler, the driver and
+//! the language service are busy.
 
 #![allow(
     clippy::print_stdout,

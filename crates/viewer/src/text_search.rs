@@ -14,7 +14,7 @@ pub struct Query {
     pub text: String,
     /// True if `A` does not match `a`.
     pub match_case: bool,
-    /// True if letters, digits and `_` beside a match rule it out.
+    /// True if `box` does not match in `boxes`.
     pub whole_word: bool,
 }
 

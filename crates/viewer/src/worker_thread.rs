@@ -61,15 +61,15 @@ impl<T: Send + 'static> WorkerThread<T> {
 }
 
 /// Gives way to the window's thread, which does little, if there are fewer cores than busy threads.
-/// Threads that this one starts inherit that, such as those of a software driver. Other systems than
-/// Linux have no such call for a single thread in `rustix`.
+/// Threads that this one starts inherit that, such as those of a software driver. Only on Linux
+/// does `rustix` set the priority of a single thread.
 fn lower_priority() {
     #[cfg(target_os = "linux")]
     {
         use rustix::process::{getpriority_process, setpriority_process};
         let own = rustix::thread::gettid();
-        // A process that was started with a lower priority keeps it. Without this call the window is
-        // slower, but works.
+        // A process that was started with a lower priority keeps it. If the call fails, the window
+        // is slower, but works.
         if getpriority_process(Some(own)).is_ok_and(|nice| nice < NICE) {
             let _ = setpriority_process(Some(own), NICE);
         }

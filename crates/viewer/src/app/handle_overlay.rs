@@ -10,7 +10,7 @@ use sdfc_render::Pose;
 use super::axes_overlay::{AXES, project_line};
 use super::theme;
 use crate::session::Session;
-use crate::session::handles::ValueHandle;
+use crate::session::handle_state::ValueHandle;
 
 /// The length of an arrow in points.
 const LENGTH: f32 = 64.0;

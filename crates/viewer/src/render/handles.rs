@@ -3,8 +3,9 @@
 //! A point of the surface of the field f(p, v) moves along its unit normal n by
 //! -(∂f/∂v) / |∇f| per unit of the value v. The first derivative comes from central differences at
 //! two values, the gradient from the field itself. If one translation d explains these speeds at
-//! all points that move, speed = n · d in the sense of least squares, then the value moves a part of
-//! the scene by d. Otherwise, as for a radius, the handle is at one point and follows its normal.
+//! all points that move, speed = n · d in the sense of least squares, then the value moves a part
+//! of the scene by d. Otherwise, as for a radius, the handle is at one point and follows its
+//! normal.
 
 use std::sync::Arc;
 use std::sync::mpsc::Sender;
@@ -228,7 +229,7 @@ mod tests {
     }
 
     #[test]
-    fn a_translation_is_told_from_a_growing_radius() {
+    fn a_translation_is_distinguished_from_a_growing_radius() {
         let d = DVec3::new(0.5, -1.0, 0.25);
         let moved: Vec<Moving> = normals().map(|n| moving(n, n.dot(d))).collect();
         let handle = translation(&moved).unwrap();

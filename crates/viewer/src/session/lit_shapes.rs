@@ -1,42 +1,11 @@
 //! The shapes in the picture that the code at the cursor makes.
 
-use std::sync::mpsc::Receiver;
-
 use sdfc::Scene;
 use sdfc_graph::ShapeId;
 
 use super::Session;
-use crate::render::shape_mask::{MaskRequest, MaskWorker, ShapeMask};
+use crate::render::shape_mask::{MaskRequest, ShapeMask};
 use crate::session::tabs::TabFile;
-
-/// The question about the code at the cursor, and its answer.
-#[derive(Debug)]
-pub struct LitShapes {
-    worker: MaskWorker,
-    masks: Receiver<ShapeMask>,
-    asked: Option<MaskRequest>,
-    mask: Option<ShapeMask>,
-    /// The position, the model and the number of the picture that were looked at last.
-    looked_at: Option<(TabFile, usize, u64, u64)>,
-}
-
-impl LitShapes {
-    /// Nothing is lit.
-    pub fn new(worker: MaskWorker, masks: Receiver<ShapeMask>) -> Self {
-        Self { worker, masks, asked: None, mask: None, looked_at: None }
-    }
-
-    /// Receives answers. Returns true if there are any.
-    pub fn poll(&mut self) -> bool {
-        let Some(mask) = self.masks.try_iter().last() else { return false };
-        self.mask = Some(mask);
-        true
-    }
-
-    fn clear(&mut self) {
-        (self.asked, self.mask, self.looked_at) = (None, None, None);
-    }
-}
 
 impl Session {
     /// Lights the shapes that the innermost call at an offset of a file makes. `None` lights

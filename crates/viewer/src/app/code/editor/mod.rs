@@ -1,32 +1,30 @@
 //! An editor of the shown text: colours, line numbers, underlined errors, descriptions,
 //! completions, search, undo and redo.
 
+mod input;
+
 use std::ops::Range;
 use std::sync::Arc;
 
 use eframe::egui::text_edit::TextEditOutput;
-use eframe::egui::{self, Event, Galley, Id, Key, Modifiers, TextBuffer, Ui};
-use sdfc_ide::Completion;
+use eframe::egui::{self, Galley, Id, TextBuffer, Ui};
 
-use super::color_button::ColorButton;
-use super::completion_list::CompletionList;
-use super::find_bar::{FindBar, FindRequest};
-use super::highlighting::{LayoutCache, LayoutKey, Mark};
-use super::hover_text::HoverPictures;
-use super::jumps::{self, Jumps};
-use super::number_drag::NumberDrag;
-use super::text_state::{byte_of, cursor_at, editor_id, record_change, select};
+use crate::app::code::color_button::ColorButton;
+use crate::app::code::completion_list::CompletionList;
+use crate::app::code::find_bar::FindBar;
+use crate::app::code::highlighting::{LayoutCache, LayoutKey, Mark};
+use crate::app::code::hover_text::HoverPictures;
+use crate::app::code::jumps::{self, Jumps};
+use crate::app::code::number_drag::NumberDrag;
+use crate::app::code::text_state::{byte_of, cursor_at, editor_id, record_change, select};
 use crate::app::theme;
 use crate::compile::diagnostics::ShownDiagnostic;
-use crate::language::completions::{inserted, matching};
 use crate::scene::line_endings::{formatted, with_line_endings_of};
 use crate::session::Session;
 use crate::session::tabs::TabFile;
 
 /// The width of the line numbers in points.
 const GUTTER: f32 = 40.0;
-/// What the Tab key inserts.
-const INDENT: &str = "  ";
 
 /// The state of the editor beside its texts.
 #[derive(Debug, Default)]
@@ -244,21 +242,6 @@ impl CodeEditor {
         }
     }
 
-    /// F12 goes to a declaration, Alt + Left back. These work in the whole panel.
-    fn handle_jump_keys(&mut self, ui: &Ui, session: &mut Session) {
-        let is_elsewhere = ui.ctx().text_edit_focused() && self.cursor.is_none();
-        if is_elsewhere {
-            return;
-        }
-        let pressed = |modifiers, key| ui.input_mut(|input| input.consume_key(modifiers, key));
-        if pressed(Modifiers::NONE, Key::F12) {
-            self.go_to_definition(session);
-        }
-        if pressed(Modifiers::ALT, Key::ArrowLeft) {
-            self.go_back(session);
-        }
-    }
-
     /// Shows the file that was chosen, and the range that a jump leads to.
     fn follow_shown_file(&mut self, ui: &Ui, session: &mut Session) {
         if self.file != *session.shown_file() {
@@ -273,87 +256,6 @@ impl CodeEditor {
             self.selected = range.clone();
             self.scroll = Some(range);
         }
-    }
-
-    /// Handles the keys that the editor would use for something else. Returns true if it has the
-    /// keyboard.
-    fn handle_keys(&mut self, ui: &Ui, id: Id, session: &mut Session) -> bool {
-        for (key, replaces) in [(Key::F, false), (Key::H, true)] {
-            if ui.input_mut(|input| input.consume_key(Modifiers::COMMAND, key)) {
-                self.search(replaces, session);
-            }
-        }
-        // egui takes the keyboard away before this sees the key.
-        if self.cursor.is_some() && self.list.close_by_key(ui) {
-            ui.memory_mut(|memory| memory.request_focus(id));
-        }
-        if !ui.memory(|memory| memory.has_focus(id)) {
-            return false;
-        }
-        let accepted = {
-            let items = self.items(session);
-            self.list.accept_by_key(ui, &items).cloned()
-        };
-        if let Some(completion) = accepted {
-            self.insert(ui, id, &completion, session);
-        }
-        // Tab would move the focus.
-        ui.input_mut(|input| {
-            if input.consume_key(Modifiers::NONE, Key::Tab) {
-                input.events.push(Event::Text(INDENT.to_owned()));
-            }
-        });
-        true
-    }
-
-    /// Shows the bar of the search, and does what it asks for.
-    fn find_and_replace(&mut self, ui: &mut Ui, id: Id, session: &mut Session) {
-        let is_editable = session.shown_draft().is_some();
-        match self.find.show(ui, session.shown_text(), self.selected.start, is_editable) {
-            None => {}
-            Some(FindRequest::Show(range)) => self.scroll = Some(range),
-            Some(FindRequest::Replace(text, range)) => {
-                record_change(ui.ctx(), id, [session.shown_text(), &text], range.clone());
-                session.edit_shown(|draft| draft.set_text(&text));
-                self.scroll = Some(range);
-            }
-            Some(FindRequest::Leave(range)) => {
-                let range = range.unwrap_or_else(|| self.selected.clone());
-                select(ui.ctx(), id, session.shown_text(), range);
-            }
-        }
-    }
-
-    /// The completions at the cursor.
-    fn items<'s>(&self, session: &'s Session) -> Vec<&'s Completion> {
-        let answer = session.answer_about_text().zip(self.cursor);
-        answer.map(|(it, cursor)| matching(it, session.shown_text(), cursor)).unwrap_or_default()
-    }
-
-    fn show_list(&mut self, ui: &Ui, id: Id, at: egui::Pos2, session: &mut Session) {
-        let clicked = {
-            let items = self.items(session);
-            self.list.show(ui, at, &items).cloned()
-        };
-        if let Some(completion) = clicked {
-            self.insert(ui, id, &completion, session);
-        }
-    }
-
-    /// Inserts a completion and selects its first gap.
-    fn insert(&mut self, ui: &Ui, id: Id, completion: &Completion, session: &mut Session) {
-        let (insert, gap) = inserted(completion);
-        let mut text = session.shown_text().to_string();
-        let start = completion.replace.start;
-        if text.get(completion.replace.clone()).is_none() {
-            return;
-        }
-        text.replace_range(completion.replace.clone(), &insert);
-        let selected = start + gap.start..start + gap.end;
-        record_change(ui.ctx(), id, [session.shown_text(), &text], selected);
-        session.edit_shown(|draft| draft.set_text(&text));
-        self.list.typing = false;
-        ui.memory_mut(|memory| memory.request_focus(id));
     }
 }
 
