@@ -97,7 +97,7 @@ impl App {
         self.canvas = Canvas::default();
         self.code_editor.move_to_window();
         let mut context = self.context.lock().unwrap_or_else(PoisonError::into_inner);
-        code::move_editors(&context, ctx, &self.session.tabs());
+        code::move_editors(&context, ctx, self.session.path(), &self.session.tabs());
         *context = ctx.clone();
         drop(context);
         let text = "the GPU that showed the window was lost: this is a new window";
@@ -293,6 +293,7 @@ impl App {
         self.store_texts(UnsavedScene::default());
         ctx.send_viewport_cmd(egui::ViewportCommand::Title(title(&path)));
         self.session.open_other(path);
+        self.code_editor = CodeEditor::default();
         restore(&self.settings, self.settings_path.as_deref(), &mut self.session);
     }
 

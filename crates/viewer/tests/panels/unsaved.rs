@@ -44,6 +44,22 @@ fn text_and_numbers_survive_the_loss_of_the_window() {
 }
 
 #[test]
+fn undo_does_not_bring_back_the_text_of_another_scene() {
+    let mut fixture = Fixture::new();
+    fixture.type_at_end("// first\n");
+    fixture.key(Modifiers::COMMAND, Key::Z);
+    let other = fixture.folder.path().join("other.sdf");
+    std::fs::write(&other, "box(1)\n").unwrap();
+    fixture.harness.state_mut().session().open_other(other);
+    fixture.until(|harness| **harness.state().opened().text() == *"box(1)\n");
+    fixture.type_at_end("// second\n");
+    for _ in 0..3 {
+        fixture.key(Modifiers::COMMAND, Key::Z);
+    }
+    assert_eq!(**fixture.harness.state().opened().text(), *"box(1)\n");
+}
+
+#[test]
 fn a_rescued_text_does_not_overwrite_a_file_that_was_changed_since() {
     let mut fixture = Fixture::new();
     fixture.type_at_end("// mine\n");

@@ -1,6 +1,7 @@
 //! Cursor and undo history of the editor, which egui keeps.
 
 use std::ops::Range;
+use std::path::Path;
 
 use eframe::egui::text::{CCursor, CCursorRange};
 use eframe::egui::text_edit::TextEditState;
@@ -8,9 +9,9 @@ use eframe::egui::{Context, Id};
 
 use crate::session::tabs::TabFile;
 
-/// The id of the editor of a file: each file has its own cursor and undo history.
-pub fn editor_id(file: &TabFile) -> Id {
-    Id::unique(("code editor", file))
+/// The id of the editor of a file of a scene: each has its own cursor and undo history.
+pub fn editor_id(scene: &Path, file: &TabFile) -> Id {
+    Id::unique(("code editor", scene, file))
 }
 
 /// The byte offset of a character.
@@ -48,8 +49,8 @@ pub fn record_change(ctx: &Context, id: Id, [before, after]: [&str; 2], selected
 }
 
 /// Gives the editors in a new window the cursors and undo histories that they had in the old one.
-pub fn move_editors(old: &Context, new: &Context, files: &[TabFile]) {
-    for id in files.iter().map(editor_id) {
+pub fn move_editors(old: &Context, new: &Context, scene: &Path, files: &[TabFile]) {
+    for id in files.iter().map(|file| editor_id(scene, file)) {
         if let Some(state) = TextEditState::load(old, id) {
             state.store(new, id);
         }

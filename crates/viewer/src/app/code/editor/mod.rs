@@ -98,7 +98,7 @@ impl CodeEditor {
     pub fn show(&mut self, ui: &mut Ui, session: &mut Session) {
         self.handle_jump_keys(ui, session);
         self.follow_shown_file(ui, session);
-        let id = editor_id(&self.file);
+        let id = editor_id(session.path(), &self.file);
         let has_focus = self.handle_keys(ui, id, session);
         self.find_and_replace(ui, id, session);
         session.ask_about_text(self.cursor.filter(|_| has_focus));
@@ -203,7 +203,12 @@ impl CodeEditor {
         match formatted(&before) {
             Some(after) if session.shown_draft().is_some() => {
                 let at = self.selected.start.min(after.len());
-                record_change(ctx, editor_id(&self.file), [&before, &after], at..at);
+                record_change(
+                    ctx,
+                    editor_id(session.path(), &self.file),
+                    [&before, &after],
+                    at..at,
+                );
                 session.edit_shown(|draft| draft.set_text(&after));
             }
             Some(_) => {}
@@ -227,7 +232,7 @@ impl CodeEditor {
         let at = pointer.filter(|at| response.interact_rect.contains(*at)).map(offset);
         let galley = (&*output.galley, output.galley_pos);
         if *text == **session.shown_text()
-            && self.drag.show(ui, editor_id(&self.file), galley, session, at)
+            && self.drag.show(ui, editor_id(session.path(), &self.file), galley, session, at)
         {
             return;
         }
@@ -252,7 +257,7 @@ impl CodeEditor {
         if let Some(range) = self.jumps.take_target(&self.file) {
             let text = session.shown_text();
             let range = range.start.min(text.len())..range.end.min(text.len());
-            select(ui.ctx(), editor_id(&self.file), text, range.clone());
+            select(ui.ctx(), editor_id(session.path(), &self.file), text, range.clone());
             self.selected = range.clone();
             self.scroll = Some(range);
         }
