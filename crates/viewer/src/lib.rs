@@ -35,5 +35,7 @@ pub mod session;
 pub mod settings;
 #[cfg(test)]
 mod test_support;
+pub mod text_search;
+pub mod unsaved_texts;
 pub mod views;
 pub mod worker_thread;

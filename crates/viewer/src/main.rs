@@ -15,7 +15,7 @@ const USAGE: &str = "usage: sdfc-view [FILE]\n\n\
     It offers to create FILE if there is none. Without FILE it shows an example.";
 const DEVICE_LOST: &str = "error: the GPU was lost while the window was drawn, as happens when a \
     driver is updated\n\
-    help: open the scene again: camera and params are kept";
+    help: open the scene again: camera, params and unsaved text are kept";
 const NO_WINDOW: &str = "a window needs a display and a driver for Vulkan, Metal, DirectX 12 or \
     OpenGL; Mesa's software drivers work (on Debian: mesa-vulkan-drivers or libgl1-mesa-dri). \
     `sdfc render --backend cpu` needs neither";

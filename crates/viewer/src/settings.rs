@@ -18,6 +18,8 @@ const MAX_BYTES: u64 = 1 << 20;
 pub struct Settings {
     /// True for the light theme.
     pub light: bool,
+    /// True if a text is formatted when it is saved.
+    pub format_on_save: bool,
     /// Width and height of the window in points.
     pub window: Option<[f32; 2]>,
     /// Recent scenes, the last one first.
@@ -73,7 +75,7 @@ impl Settings {
 }
 
 /// An absolute path; `None` if it is not UTF-8, which JSON cannot store.
-fn absolute(path: &Path) -> Option<String> {
+pub fn absolute(path: &Path) -> Option<String> {
     std::path::absolute(path).ok()?.to_str().map(str::to_owned)
 }
 

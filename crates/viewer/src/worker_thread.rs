@@ -8,6 +8,9 @@ use crate::latest_channel::LatestChannel;
 
 /// The longest time that dropping a worker waits for the current message.
 const SHUTDOWN_TIMEOUT: Duration = Duration::from_secs(3);
+/// The nice value of a worker: from 0, which is normal, to 19.
+#[cfg(target_os = "linux")]
+const NICE: i32 = 5;
 /// Stack size in bytes. The compiler bounds the depth of its recursion; this is enough for it.
 const STACK_BYTES: usize = 16 << 20;
 
@@ -39,6 +42,7 @@ impl<T: Send + 'static> WorkerThread<T> {
         let received = Arc::clone(&messages);
         let (until_end, ended) = channel();
         let run = move || {
+            lower_priority();
             while let Some(message) = received.recv() {
                 handle(message);
             }
@@ -56,6 +60,22 @@ impl<T: Send + 'static> WorkerThread<T> {
     }
 }
 
+/// Gives way to the window's thread, which does little, if there are fewer cores than busy threads.
+/// Threads that this one starts inherit that, such as those of a software driver. Only on Linux
+/// does `rustix` set the priority of a single thread.
+fn lower_priority() {
+    #[cfg(target_os = "linux")]
+    {
+        use rustix::process::{getpriority_process, setpriority_process};
+        let own = rustix::thread::gettid();
+        // A process that was started with a lower priority keeps it. If the call fails, the window
+        // is slower, but works.
+        if getpriority_process(Some(own)).is_ok_and(|nice| nice < NICE) {
+            let _ = setpriority_process(Some(own), NICE);
+        }
+    }
+}
+
 impl<T> Drop for WorkerThread<T> {
     fn drop(&mut self) {
         self.channel.close();
@@ -68,6 +88,19 @@ impl<T> Drop for WorkerThread<T> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn a_worker_gives_way_to_the_window() {
+        let nice = || rustix::process::getpriority_process(Some(rustix::thread::gettid())).unwrap();
+        let before = nice();
+        let (sender, values) = std::sync::mpsc::channel();
+        let worker =
+            WorkerThread::start("test", |_| move |()| sender.send(nice()).unwrap()).unwrap();
+        worker.channel().send(());
+        assert_eq!(values.recv(), Ok(NICE.max(before)));
+        assert_eq!(nice(), before);
+    }
 
     #[test]
     fn messages_are_handled_until_the_worker_is_dropped() {

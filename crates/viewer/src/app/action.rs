@@ -6,8 +6,8 @@ use crate::compile::diagnostics::ShownFix;
 pub enum Action {
     /// Copies text to the clipboard.
     Copy(String),
-    /// Makes a change that a diagnostic proposes.
-    Fix(ShownFix),
+    /// Makes a change of a file that a diagnostic proposes.
+    Fix(String, ShownFix),
     /// Shows a message in the status line.
     Message(String),
 }

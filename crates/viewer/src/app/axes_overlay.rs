@@ -12,7 +12,7 @@ const AXIS_LENGTH: f32 = 26.0;
 /// The near plane at which lines are clipped, as a fraction of the distance to the target.
 const NEAR_PLANE: f64 = 1e-3;
 /// Direction, name and colour of each axis.
-const AXES: [(DVec3, &str, Color32); 3] = [
+pub(super) const AXES: [(DVec3, &str, Color32); 3] = [
     (DVec3::X, "x", Color32::from_rgb(230, 90, 80)),
     (DVec3::Y, "y", Color32::from_rgb(110, 190, 80)),
     (DVec3::Z, "z", Color32::from_rgb(90, 140, 240)),
@@ -65,7 +65,7 @@ fn axes(ui: &Ui, rect: Rect, pose: &Pose) {
 }
 
 /// A line in screen coordinates; `None` if it is behind the camera or infinite.
-fn project_line(pose: &Pose, rect: Rect, start: DVec3, end: DVec3) -> Option<[Pos2; 2]> {
+pub(super) fn project_line(pose: &Pose, rect: Rect, start: DVec3, end: DVec3) -> Option<[Pos2; 2]> {
     let [right, up, forward] = pose.basis();
     let [mut start, mut end] = [start, end].map(|point| point - pose.eye);
     if !start.is_finite() || !end.is_finite() {

@@ -9,6 +9,8 @@ use eframe::egui::{
 use glam::DVec3;
 use sdfc_render::{CAPPED, HIT};
 
+use super::handle_overlay::HandleOverlay;
+use super::shape_outline::ShapeOutline;
 use super::theme::{self, card};
 use super::{axes_overlay, legend_card};
 use crate::render::picture::Picture;
@@ -31,6 +33,9 @@ pub struct Canvas {
     /// The session's picture count when the texture was made.
     shown: u64,
     last_wheel: Option<Instant>,
+    outline: ShapeOutline,
+    handles: HandleOverlay,
+    rect: Option<Rect>,
 }
 
 impl Canvas {
@@ -38,6 +43,7 @@ impl Canvas {
     /// Returns the position that was clicked, as fractions of the picture.
     pub fn show(&mut self, ui: &mut Ui, session: &mut Session) -> Option<[f64; 2]> {
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
+        self.rect = Some(rect);
         ui.painter().rect_filled(rect, 0.0, theme::of(ui).ground);
         self.refresh(ui, session);
         let shown = session.picture.as_ref().map_or(rect, |it| shown_at(rect, it.request.size));
@@ -47,6 +53,7 @@ impl Canvas {
         } else {
             waiting(ui, rect, session);
         }
+        self.outline.show(ui, [rect, shown], session);
         if let Some(picture) = session.picture.as_deref().filter(|_| session.show_axes) {
             axes_overlay::show(ui, shown, picture);
         }
@@ -72,8 +79,17 @@ impl Canvas {
             legend_card::show(ui, rect, &picture.legend);
         }
         pixel_info(ui, &response, [rect, shown], session);
+        self.handles.show(ui, [rect, shown], session);
         let clicked = response.interact_pointer_pos().filter(|_| response.clicked());
+        if clicked.is_some() {
+            session.handles.selected = None;
+        }
         clicked.map(|at| fractions(shown, at))
+    }
+
+    /// Where the picture was shown in the last frame.
+    pub fn rect(&self) -> Rect {
+        self.rect.unwrap_or(Rect::ZERO)
     }
 
     /// Uploads a new picture to the window's texture.

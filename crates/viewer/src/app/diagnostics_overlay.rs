@@ -79,11 +79,11 @@ fn card_of(
         for help in &diagnostic.help {
             ui.label(RichText::new(help).color(theme::of(ui).weak));
         }
-        let is_current = session.diagnostics_of_text().any(|found| found == diagnostic);
+        let is_current = session.has_diagnosed_text(&diagnostic.file);
         for fix in diagnostic.fixes.iter().filter(|_| is_current) {
             let button = ui.small_button(&fix.title);
             if button.on_hover_text("Make this change in the text.").clicked() {
-                actions.push(Action::Fix(fix.clone()));
+                actions.push(Action::Fix(diagnostic.file.clone(), fix.clone()));
             }
         }
     });

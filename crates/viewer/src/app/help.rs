@@ -15,7 +15,7 @@ pub const SIDES: [(Key, Side); 6] = [
     (Key::Num8, Side::Bottom),
 ];
 
-const ROWS: [(&str, &str); 23] = [
+const ROWS: [(&str, &str); 27] = [
     ("drag", "orbit around the pivot"),
     ("right or middle drag", "pan"),
     ("wheel", "zoom at the pointer"),
@@ -31,7 +31,11 @@ const ROWS: [(&str, &str); 23] = [
     ("C", "copy the camera to paste into the scene"),
     ("V", "next view"),
     ("Space", "play or pause the time"),
-    ("Ctrl + S", "save changed values to the scene's file"),
+    ("Ctrl + S", "save the shown text; for the scene also changed values"),
+    ("Ctrl + F, Ctrl + H", "find, replace text"),
+    ("F12, Ctrl + click", "go to the declaration of a name"),
+    ("Alt + Left", "go back"),
+    ("Alt + drag in the code", "change a number"),
     ("Ctrl + E", "export a picture, an animation, a shader"),
     ("K, T", "show the panel “Controls”, “Code”"),
     ("R", "pause or resume refining the picture"),

@@ -46,10 +46,17 @@ fn declared(ui: &mut Ui, session: &mut Session, model: &Model, actions: &mut Vec
         let widget = |ui: &mut Ui, label: RowLabel<'_>| {
             param_widget(ui, param, &mut value, label);
         };
-        if row(ui, &param.name, &hint(param), default, widget) {
+        let response = row(ui, &param.name, &hint(param), default, widget);
+        if response.is_reset {
             session.param_values.params.remove(&param.name);
         } else if value != lanes {
             session.param_values.params.insert(param.name.clone(), value);
+        }
+        if response.is_hovered {
+            session.handles.hovered = Some(param.name.clone());
+        }
+        if response.is_chosen || value != lanes {
+            session.handles.selected = Some(param.name.clone());
         }
     }
     ui.horizontal_wrapped(|ui| {
@@ -90,7 +97,7 @@ fn named(ui: &mut Ui, session: &mut Session, number: &SourceNumber) {
     let widget = |ui: &mut Ui, label: RowLabel<'_>| {
         slider(ui, &mut value, [ends, limits], suffix, label);
     };
-    if row(ui, name, &hint, default, widget) {
+    if row(ui, name, &hint, default, widget).is_reset {
         session.param_values.set_number(number, number.value);
     } else if value != before * unit {
         session.param_values.set_number(number, value / unit);
@@ -118,16 +125,25 @@ impl RowLabel<'_> {
     }
 }
 
+/// What the user does with a row.
+struct RowResponse {
+    /// True if the value is reset.
+    is_reset: bool,
+    /// True if the pointer is over the row.
+    is_hovered: bool,
+    /// True if the name was clicked.
+    is_chosen: bool,
+}
+
 /// A row with a name, a widget and, if the value was changed, a button that resets it to `default`.
-/// Returns true if the button was clicked.
 fn row(
     ui: &mut Ui,
     name: &str,
     hint: &str,
     default: Option<String>,
     widget: impl FnOnce(&mut Ui, RowLabel<'_>),
-) -> bool {
-    ui.horizontal(|ui| {
+) -> RowResponse {
+    let row = ui.horizontal(|ui| {
         let color = if default.is_some() { theme::of(ui).accent } else { theme::of(ui).text };
         let left = egui::Layout::left_to_right(egui::Align::Center);
         let label = ui.allocate_ui_with_layout(egui::vec2(84.0, 18.0), left, |ui| {
@@ -135,14 +151,23 @@ fn row(
             let name = RichText::new(name).color(color);
             ui.add(egui::Label::new(name).truncate()).on_hover_text(hint).id
         });
+        let id = label.inner.with("name");
+        let chosen = ui.interact(label.response.rect, id, egui::Sense::click());
+        let info = format!("choose {name}");
+        chosen.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &info));
+        let chosen = chosen.on_hover_text(hint).clicked();
         // Room for the number and the button, so that the panel does not grow when a value changes.
         ui.spacing_mut().slider_width = (ui.available_width() - BESIDE_SLIDER).max(48.0);
         widget(ui, RowLabel { id: label.inner, hint });
         let button = egui::Button::new(RichText::new("reset").small()).frame(false);
-        default
-            .is_some_and(|text| ui.add(button).on_hover_text(format!("Reset to {text}.")).clicked())
-    })
-    .inner
+        let is_reset = default.is_some_and(|text| {
+            ui.add(button).on_hover_text(format!("Reset to {text}.")).clicked()
+        });
+        (is_reset, chosen)
+    });
+    let (is_reset, is_chosen) = row.inner;
+    let is_hovered = ui.rect_contains_pointer(row.response.rect);
+    RowResponse { is_reset, is_hovered, is_chosen }
 }
 
 fn hint(param: &Param) -> String {

@@ -8,19 +8,20 @@ use eframe::egui::{self, Context, Ui};
 
 use super::action::Action;
 use super::canvas::Canvas;
-use super::code_editor::CodeEditor;
-use super::code_panel::CodeMode;
+use super::code::panel::{self as code_panel, CodeMode};
+use super::code::{self, CodeEditor};
 use super::export_dialog::ExportDialog;
 use super::monitor::Monitor;
 use super::open_panels::OpenPanels;
 use super::path_dialog::{Chosen, NEW_SCENE, PathDialog};
 use super::unsaved_dialog::{Exit, UnsavedDialog};
 use super::{
-    code_panel, controls, diagnostics_overlay, help, missing_file, path_dialog, scene_menu,
-    shortcuts, status_bar, theme, toolbar,
+    controls, diagnostics_overlay, help, missing_file, path_dialog, scene_menu, shortcuts,
+    status_bar, theme, toolbar,
 };
 use crate::session::Session;
 use crate::settings::Settings;
+use crate::unsaved_texts::{UnsavedScene, UnsavedTexts};
 
 /// The time that a message stays in the status line.
 const MESSAGE_TIME: Duration = Duration::from_secs(4);
@@ -67,7 +68,8 @@ impl App {
         let shared = Arc::clone(&context);
         let wake = move || current_context(&shared).request_repaint();
         let mut session = Session::open(path, Arc::new(wake))?;
-        restore(&settings, &mut session);
+        session.format_on_save = settings.format_on_save;
+        restore(&settings, settings_path.as_deref(), &mut session);
         Ok(Self {
             session,
             context,
@@ -93,15 +95,34 @@ impl App {
         apply_theme(ctx, &self.settings);
         // Textures were lost with the device.
         self.canvas = Canvas::default();
-        *self.context.lock().unwrap_or_else(PoisonError::into_inner) = ctx.clone();
+        self.code_editor.move_to_window();
+        let mut context = self.context.lock().unwrap_or_else(PoisonError::into_inner);
+        code::move_editors(&context, ctx, self.session.path(), &self.session.tabs());
+        *context = ctx.clone();
+        drop(context);
         let text = "the GPU that showed the window was lost: this is a new window";
         self.session.messages.push(text.to_owned());
     }
 
-    /// Stores the settings before the window closes.
+    /// Stores the settings before the window closes. The user has agreed that texts are lost that
+    /// are not saved.
     pub(super) fn close(&mut self) {
         let ctx = current_context(&self.context);
         self.store_settings(&ctx);
+        self.store_texts(UnsavedScene::default());
+    }
+
+    /// Stores the settings, and the texts that are not saved, because the program cannot go on.
+    /// The next window with this scene has them.
+    pub fn rescue(&mut self) {
+        let ctx = current_context(&self.context);
+        self.store_settings(&ctx);
+        self.store_texts(self.session.unsaved_texts());
+    }
+
+    fn store_texts(&self, unsaved: UnsavedScene) {
+        let texts = self.settings_path.as_deref().map(UnsavedTexts::beside);
+        texts.into_iter().for_each(|texts| texts.store(self.session.path(), unsaved.clone()));
     }
 
     /// The open scene, to look at.
@@ -112,6 +133,11 @@ impl App {
     /// The open scene.
     pub fn session(&mut self) -> &mut Session {
         &mut self.session
+    }
+
+    /// Where the window shows the picture.
+    pub fn picture_rect(&self) -> egui::Rect {
+        self.canvas.rect()
     }
 
     /// Returns true if no finer picture follows.
@@ -141,6 +167,7 @@ impl App {
         let message = self.message.as_ref().map(|(text, _)| text.as_str());
         let line = egui::Panel::bottom("status").frame(bar_frame(ui));
         line.show(ui, |ui| status_bar::show(ui, &mut self.session, message));
+        self.session.handles.hovered = None;
         self.panels.keep_room_for_picture(ui.available_width());
         let most = (ui.available_width() - MIN_PICTURE).max(220.0);
         if self.panels.controls {
@@ -156,10 +183,14 @@ impl App {
             let state = (&mut self.code_mode, &mut self.code_editor);
             panel.show(ui, |ui| code_panel::show(ui, session, state, &mut actions));
         }
+        let lit = self.code_editor.lit_position(&self.session).filter(|_| self.panels.code);
+        self.session.select_handles(lit.as_ref());
+        self.session.light_shapes(lit);
         let center = egui::CentralPanel::no_frame();
         center.show(ui, |ui| {
             if let Some(clicked) = self.canvas.show(ui, &mut self.session) {
-                self.code_editor.light(self.session.code_at(clicked), self.session.text());
+                let code = self.session.code_at(clicked);
+                self.code_editor.light(code, &mut self.session);
             }
             diagnostics_overlay::show(ui, &self.session, &mut self.panels, &mut actions);
         });
@@ -224,8 +255,9 @@ impl App {
     fn leave_for(&mut self, ctx: &Context, chosen: Chosen) {
         match chosen {
             Chosen::Open(path) => self.leave(ctx, Exit::Open(path)),
-            // The changed numbers are in the new file.
-            Chosen::SavedAs(path) => self.open(ctx, path),
+            // The text of the scene and its numbers are in the new file.
+            Chosen::SavedAs(path) if !self.session.has_edited_imports() => self.open(ctx, path),
+            Chosen::SavedAs(path) => self.leave(ctx, Exit::Open(path)),
         }
     }
 
@@ -258,16 +290,19 @@ impl App {
     /// Stores the settings of the open scene and opens another.
     fn open(&mut self, ctx: &Context, path: PathBuf) {
         self.store_settings(ctx);
+        self.store_texts(UnsavedScene::default());
         ctx.send_viewport_cmd(egui::ViewportCommand::Title(title(&path)));
         self.session.open_other(path);
-        restore(&self.settings, &mut self.session);
+        self.code_editor = CodeEditor::default();
+        restore(&self.settings, self.settings_path.as_deref(), &mut self.session);
     }
 
     /// Stores the settings, together with what other windows have stored meanwhile.
     pub fn store_settings(&mut self, ctx: &Context) {
         let Some(path) = self.settings_path.clone() else { return };
-        let mut settings = Settings { light: self.settings.light, ..Settings::read(&path) };
         let session = &self.session;
+        let (light, format_on_save) = (self.settings.light, session.format_on_save);
+        let mut settings = Settings { light, format_on_save, ..Settings::read(&path) };
         let params = session.param_values.params.clone();
         settings.record(session.path(), session.manual_camera(), params);
         let size = ctx.input(|input| input.viewport().inner_rect.map(|rect| rect.size().into()));
@@ -279,7 +314,10 @@ impl App {
     fn perform(&mut self, action: Action) {
         let text = match action {
             Action::Message(text) => text,
-            Action::Fix(fix) => return self.session.apply_fix(&fix),
+            Action::Fix(file, fix) => match self.session.apply_fix(&file, &fix) {
+                true => return,
+                false => "the text has changed since".to_owned(),
+            },
             Action::Copy(text) => match self.copy(&text) {
                 Ok(()) => format!("copied: {text}"),
                 Err(error) => format!("cannot copy: {error}"),
@@ -314,8 +352,12 @@ fn current_context(shared: &Mutex<Context>) -> Context {
     shared.lock().unwrap_or_else(PoisonError::into_inner).clone()
 }
 
-/// Restores the stored camera and params of a scene.
-fn restore(settings: &Settings, session: &mut Session) {
+/// Restores the stored camera, params and texts of a scene.
+fn restore(settings: &Settings, settings_path: Option<&Path>, session: &mut Session) {
+    let unsaved = settings_path.map(UnsavedTexts::beside);
+    if let Some(unsaved) = unsaved.and_then(|texts| texts.of(session.path())) {
+        session.restore_texts(&unsaved);
+    }
     if let Some(scene) = settings.scene(session.path()) {
         session.restore(scene.camera.as_ref(), &scene.params);
     }

@@ -16,10 +16,15 @@ pub fn handle(
     actions: &mut Vec<Action>,
 ) {
     if ctx.input_mut(|input| input.consume_key(egui::Modifiers::COMMAND, Key::S)) {
-        session.save_to_file(Saved::All);
+        session.save_shown(Saved::All);
     }
     if ctx.input_mut(|input| input.consume_key(egui::Modifiers::COMMAND, Key::Q)) {
         ctx.send_viewport_cmd(egui::ViewportCommand::Close);
+    }
+    let searches = |key| ctx.input(|input| input.modifiers.command && input.key_pressed(key));
+    if searches(Key::F) || searches(Key::H) {
+        // The editor handles the key.
+        panels.code = true;
     }
     if ctx.text_edit_focused() {
         return;

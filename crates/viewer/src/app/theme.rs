@@ -28,6 +28,8 @@ pub struct Palette {
     pub accent: Color32,
     /// Background of selected values.
     pub chosen: Color32,
+    /// Background of the match of a search that was chosen last.
+    pub found: Color32,
     /// Links.
     pub link: Color32,
     /// Functions, shapes and settings in the source.
@@ -53,6 +55,7 @@ const DARK: Palette = Palette {
     weak: Color32::from_rgb(134, 143, 156),
     accent: Color32::from_rgb(232, 150, 76),
     chosen: Color32::from_rgb(110, 72, 38),
+    found: Color32::from_rgb(128, 104, 20),
     link: Color32::from_rgb(122, 176, 232),
     call: Color32::from_rgb(140, 200, 160),
     error: Color32::from_rgb(240, 98, 92),
@@ -74,6 +77,7 @@ const LIGHT: Palette = Palette {
     weak: Color32::from_rgb(98, 107, 120),
     accent: Color32::from_rgb(176, 88, 10),
     chosen: Color32::from_rgb(255, 213, 170),
+    found: Color32::from_rgb(255, 222, 80),
     link: Color32::from_rgb(22, 94, 170),
     call: Color32::from_rgb(24, 112, 66),
     error: Color32::from_rgb(194, 40, 36),

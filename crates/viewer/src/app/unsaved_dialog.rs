@@ -6,7 +6,7 @@ use eframe::egui::{self, Context, RichText, Ui};
 
 use super::theme;
 use crate::session::Session;
-use crate::session::save_state::{SaveState, Saved};
+use crate::session::save_state::SaveState;
 
 /// A way to leave the scene.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -38,7 +38,7 @@ impl UnsavedDialog {
     /// Shows the question. Returns the exit once the numbers are in the file or given up.
     pub fn show(&mut self, ctx: &Context, session: &mut Session) -> Option<Exit> {
         let exit = self.exit.clone()?;
-        let saved = self.saving && *session.save_state() == SaveState::Idle;
+        let saved = self.saving && session.save_state() == SaveState::Idle;
         let mut leaves = saved;
         let mut stays = false;
         if !saved {
@@ -56,8 +56,8 @@ impl UnsavedDialog {
     /// Returns whether the scene is left and whether it stays open.
     fn question(&mut self, ui: &mut Ui, exit: &Exit, session: &mut Session) -> (bool, bool) {
         ui.set_width(360.0);
-        if session.draft().is_edited() {
-            ui.label("The edited text is not saved to the file.");
+        for file in session.edited_files() {
+            ui.label(format!("The edited text of {file} is not saved."));
         }
         match session.param_values.changed_numbers() {
             0 => {}
@@ -66,13 +66,13 @@ impl UnsavedDialog {
                 ui.label(format!("{changed} changed numbers are not saved to the file."));
             }
         }
-        let writing = self.saving && *session.save_state() == SaveState::Writing;
+        let writing = self.saving && session.save_state() == SaveState::Writing;
         if let SaveState::Failed(why) = session.save_state()
             && self.saving
         {
             ui.label(RichText::new(why).color(theme::of(ui).error));
         } else if writing {
-            ui.label(RichText::new("writing the file…").color(theme::of(ui).weak));
+            ui.label(RichText::new("writing…").color(theme::of(ui).weak));
         }
         ui.add_space(6.0);
         let [save, discard] = match exit {
@@ -81,9 +81,9 @@ impl UnsavedDialog {
         };
         let buttons = ui.horizontal(|ui| {
             let save = ui.add_enabled(!writing, egui::Button::new(save));
-            if save.on_hover_text("Write text and numbers to the scene's file.").clicked() {
+            if save.on_hover_text("Write texts and numbers to their files.").clicked() {
                 self.saving = true;
-                session.save_to_file(Saved::Numbers);
+                session.save_all();
             }
             let discard = ui.button(discard).on_hover_text("The changes are lost.");
             let cancel = ui.button("Cancel").on_hover_text("Stay with this scene (Esc).");

@@ -33,7 +33,8 @@ type SharedApp = Rc<RefCell<Option<App>>>;
 pub enum WindowError {
     /// No window could be opened; why, in one line.
     Refused(String),
-    /// The device was lost while the window was drawn. The settings were stored.
+    /// The device was lost while the window was drawn. The settings and the texts that are not
+    /// saved were stored.
     DeviceLost,
 }
 
@@ -78,11 +79,13 @@ fn run_with(renderer: eframe::Renderer, path: &Path, app: &SharedApp) -> Result<
             }
             // egui panics if a lost device gives it no buffers. The event loop cannot be used
             // again.
-            Err(_) if events.is_device_lost() => {
-                app.borrow_mut().as_mut().into_iter().for_each(App::close);
-                return Err(Failure::Final(WindowError::DeviceLost));
+            Err(panic) => {
+                app.borrow_mut().as_mut().into_iter().for_each(App::rescue);
+                if events.is_device_lost() {
+                    return Err(Failure::Final(WindowError::DeviceLost));
+                }
+                resume_unwind(panic);
             }
-            Err(panic) => resume_unwind(panic),
         }
     }
     Err(Failure::TryNext(format!("the window's device was lost {MAX_LOSSES} times")))

@@ -15,10 +15,10 @@ use sdfc_lang::live_literals::LiveLiteral;
 
 use crate::compile::diagnostics::SceneDiagnostics;
 use crate::compile::engines::{Engines, PreparedEngine, on_cpu};
-use crate::compile::request::{BuildRequest, CompileEvent};
+use crate::compile::request::{BuildRequest, CompileEvent, FileTexts};
 use crate::compile::text_diff::TextDiff;
 use crate::latest_channel::LatestChannel;
-use crate::scene::document::{Document, Imports};
+use crate::scene::document::{Document, EditedFolder, Imports, TextsByPath};
 use crate::scene::field_probe::FieldProbe;
 use crate::scene::model::{BuildTimes, Model, is_animated};
 use crate::scene::shapes::ShapeIndex;
@@ -43,6 +43,7 @@ impl LastRead {
     fn gives_same_scene(&self, request: &BuildRequest, document: &Document) -> bool {
         (&self.request.path, self.request.live_literals) == (&request.path, request.live_literals)
             && self.request.values == request.values
+            && self.request.imports == request.imports
             && self.source == document.source
             && self.imports.are_unchanged()
     }
@@ -53,6 +54,7 @@ impl LastRead {
 struct SceneContent {
     scene: Arc<Scene>,
     source: String,
+    imports: Arc<TextsByPath>,
     /// The byte offset around which numbers are live if the scene has more than can be.
     focus: Option<u32>,
     shapes: Arc<ShapeIndex>,
@@ -67,8 +69,8 @@ pub struct ModelBuilder<R> {
     requests: Arc<LatestChannel<BuildRequest>>,
     report: R,
     last_read: Option<LastRead>,
-    /// The text of the file when it was read last.
-    last_file: Option<Arc<str>>,
+    /// The texts of the files in place of which drafts are compiled, when they were read last.
+    last_files: FileTexts,
     /// The scene that is shown, and the request that it was built for.
     shown: Option<(BuildRequest, SceneContent)>,
     engines: Engines,
@@ -89,7 +91,7 @@ impl<R: FnMut(CompileEvent)> ModelBuilder<R> {
             requests,
             report,
             last_read: None,
-            last_file: None,
+            last_files: FileTexts::default(),
             shown: None,
             engines: Engines::default(),
             device_generation: 0,
@@ -139,28 +141,35 @@ impl<R: FnMut(CompileEvent)> ModelBuilder<R> {
                 return false;
             }
         };
-        let has_changed = std::mem::replace(&mut self.last_file, file.clone()) != file;
+        let folder = EditedFolder::new(&request.path, request.imports.clone());
+        let on_disk = |path: &String| (path.clone(), folder.text_on_disk(path));
+        let drafted = folder.drafts().keys().map(on_disk).collect();
+        let files = FileTexts { scene: file, imports: drafted };
+        let has_changed = std::mem::replace(&mut self.last_files, files.clone()) != files;
         let same_scene =
             self.last_read.as_ref().is_some_and(|last| last.gives_same_scene(request, &document));
         if same_scene && self.last_read.as_ref().is_some_and(|last| last.request == *request) {
-            if let Some(file) = file.filter(|_| has_changed) {
-                (self.report)(CompileEvent::FileChanged(file));
+            if has_changed {
+                (self.report)(CompileEvent::FilesChanged(files));
             }
             return true;
         }
         self.last_content_id += u64::from(!same_scene);
-        let imports = Imports::new(&request.path);
+        let imports = Imports::new(folder);
         let focus = self.focus(request, &document.source);
         let compiled = self.compile(request, &document, &imports, focus);
         let diagnostics = self.diagnostics(request, &document, &imports, &compiled);
         let scene = compiled.ok();
         let shapes = scene.as_ref().map(|scene| ShapeIndex::new(scene, scene.sources()));
         let folders = imports.folders();
+        let texts = imports.texts();
+        let files = FileTexts { imports: imports.files(), ..files };
         self.last_read =
             Some(LastRead { request: request.clone(), source: document.source.clone(), imports });
         let draws = scene.as_ref().is_some_and(Scene::draws);
         let text = document.source.as_str().into();
-        (self.report)(CompileEvent::Compiled { text, file, diagnostics, folders, draws });
+        let imports = texts.clone();
+        (self.report)(CompileEvent::Compiled { text, imports, files, diagnostics, folders, draws });
         match scene {
             None => false,
             Some(_) if !draws => {
@@ -172,6 +181,7 @@ impl<R: FnMut(CompileEvent)> ModelBuilder<R> {
                 scene.bounds_at(&FrameValues::defaults(scene.params()));
                 let content = SceneContent {
                     source: document.source,
+                    imports: Arc::new(texts),
                     focus,
                     shapes: Arc::new(shapes.unwrap_or_default()),
                     field: Arc::new(FieldProbe::new(scene.drawn())),
@@ -308,7 +318,7 @@ impl<R: FnMut(CompileEvent)> ModelBuilder<R> {
         prepared: PreparedEngine,
         build_times: BuildTimes,
     ) -> Model {
-        let SceneContent { scene, source, shapes, field, animated, read_at, id, .. } =
+        let SceneContent { scene, source, imports, shapes, field, animated, read_at, id, .. } =
             content.clone();
         let PreparedEngine { engine, method, method_program, note } = prepared;
         let literals = scene.live_literals().iter();
@@ -318,6 +328,7 @@ impl<R: FnMut(CompileEvent)> ModelBuilder<R> {
             parallel: is_parallel(request, &scene),
             scene,
             source,
+            imports,
             numbers,
             engine,
             method,

@@ -1,12 +1,13 @@
 //! The requests to the compile worker, and its reports.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 use std::sync::Arc;
 
 use sdfc::CompileValues;
 
 use crate::compile::diagnostics::SceneDiagnostics;
+use crate::scene::document::TextsByPath;
 use crate::scene::model::Model;
 
 /// Which scene is built, and how.
@@ -16,6 +17,8 @@ pub struct BuildRequest {
     pub path: PathBuf,
     /// The text that is compiled in place of the file's, if it was edited in the window.
     pub draft: Option<Arc<str>>,
+    /// The texts that are compiled in place of imported files, if they were edited in the window.
+    pub imports: TextsByPath,
     /// The ray method; `None` takes the scene's.
     pub method: Option<sdfc::Method>,
     /// True if the scene's numbers become live literals, which change without a recompile.
@@ -36,6 +39,7 @@ impl BuildRequest {
         Self {
             path: path.into(),
             draft: None,
+            imports: TextsByPath::new(),
             method: None,
             live_literals: true,
             values: CompileValues::new(),
@@ -46,19 +50,31 @@ impl BuildRequest {
     }
 }
 
+/// The texts of a scene's files as they are on disk.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct FileTexts {
+    /// That of the scene; `None` if it cannot be read.
+    pub scene: Option<Arc<str>>,
+    /// Those of imported files by their path beside the scene; `None` for those that cannot be
+    /// read.
+    pub imports: BTreeMap<String, Option<Arc<str>>>,
+}
+
 /// A report of the compile worker.
 #[derive(Debug)]
 pub enum CompileEvent {
     /// The file cannot be read; why.
     Unreadable(String),
-    /// The file has another text, but a draft is compiled in place of it.
-    FileChanged(Arc<str>),
+    /// A file has another text, but a draft is compiled in place of it.
+    FilesChanged(FileTexts),
     /// The source was compiled, with or without errors.
     Compiled {
         /// The text that was compiled.
         text: Arc<str>,
-        /// The text of the file as it was read; `None` if there is a draft and no file.
-        file: Option<Arc<str>>,
+        /// The texts of the imported files that were compiled.
+        imports: TextsByPath,
+        /// The texts of all files as they are on disk.
+        files: FileTexts,
         /// Errors and warnings.
         diagnostics: SceneDiagnostics,
         /// The folders to watch: a change in one of them can change the scene.

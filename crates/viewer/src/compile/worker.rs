@@ -223,7 +223,7 @@ mod tests {
                 CompileEvent::Failed(why) => panic!("{why}"),
                 CompileEvent::Ready(_)
                 | CompileEvent::Compiled { .. }
-                | CompileEvent::FileChanged(_)
+                | CompileEvent::FilesChanged(_)
                 | CompileEvent::BuildingPipeline
                 | CompileEvent::Unreadable(_)
                 | CompileEvent::Empty => {}

@@ -14,8 +14,8 @@ use crate::scene::model::Model;
 /// A file to write.
 #[derive(Debug)]
 pub enum ExportJob {
-    /// The scene's own file, unless it has another text on disk.
-    SaveScene {
+    /// The file of the scene or of an import, unless it has another text on disk.
+    SaveSource {
         /// The file.
         path: PathBuf,
         /// The source that the file must still have.
@@ -61,8 +61,8 @@ pub enum ExportJob {
 /// The outcome of a job.
 #[derive(Debug)]
 pub struct ExportOutcome {
-    /// True if the job was to save the scene's own file.
-    pub is_scene: bool,
+    /// The file of the scene or of an import, if the job was to save one.
+    pub source: Option<PathBuf>,
     /// A message for the status line, of success or failure.
     pub result: Result<String, String>,
 }
@@ -93,13 +93,18 @@ pub struct Exporter {
 impl Exporter {
     /// Writes a file, completely or not at all.
     pub fn run(&self, job: ExportJob) -> ExportOutcome {
-        let is_scene = matches!(job, ExportJob::SaveScene { .. });
-        ExportOutcome { is_scene, result: self.write_file(job) }
+        let source = match &job {
+            ExportJob::SaveSource { path, .. } => Some(path.clone()),
+            ExportJob::Picture { .. } | ExportJob::Shader { .. } | ExportJob::Screenshot { .. } => {
+                None
+            }
+        };
+        ExportOutcome { source, result: self.write_file(job) }
     }
 
     fn write_file(&self, job: ExportJob) -> Result<String, String> {
         match job {
-            ExportJob::SaveScene { path, before, after } => {
+            ExportJob::SaveSource { path, before, after } => {
                 if path.exists() {
                     let document = Document::read(&path).map_err(|error| error.to_string())?;
                     if document.source != before {
@@ -208,7 +213,7 @@ mod tests {
         std::fs::write(&path, "box(1)").unwrap();
         let save = |before: &str| {
             let (before, after) = (before.to_owned(), "box(2)".to_owned());
-            exporter().run(ExportJob::SaveScene { path: path.clone(), before, after }).result
+            exporter().run(ExportJob::SaveSource { path: path.clone(), before, after }).result
         };
         assert!(save("box(3)").is_err());
         assert_eq!(std::fs::read_to_string(&path).unwrap(), "box(1)");

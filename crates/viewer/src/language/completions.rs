@@ -54,7 +54,7 @@ pub fn inserted(completion: &Completion) -> (String, Range<usize>) {
 
 #[cfg(test)]
 mod tests {
-    use std::path::PathBuf;
+    use std::path::Path;
     use std::sync::mpsc::channel;
 
     use super::*;
@@ -64,8 +64,8 @@ mod tests {
     fn answer(text: &str) -> LanguageAnswer {
         let (sender, answers) = channel();
         let worker = LanguageWorker::new(sender, || {}).unwrap();
-        let (path, cursor) = (PathBuf::from("a.sdf"), Some(text.len()));
-        worker.send(LanguageRequest { path, text: text.into(), cursor });
+        let (path, cursor) = (Path::new("a.sdf"), Some(text.len()));
+        worker.send(LanguageRequest { cursor, ..LanguageRequest::new(path, text) });
         answers.recv_timeout(TIMEOUT).unwrap()
     }
 

@@ -1,23 +1,36 @@
 //! The thread that asks the language service about the latest text.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::mpsc::Sender;
 
-use sdfc_files::Folder;
-use sdfc_ide::{Analysis, Completion, TokenSpan, complete, tokens};
+use sdfc_ide::{Analysis, Completion, Resolver, TokenSpan, complete, tokens};
 
+use crate::scene::document::{EditedFolder, TextsByPath};
 use crate::worker_thread::WorkerThread;
 
 /// A question about a text.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LanguageRequest {
-    /// The scene's file, beside which imports are looked for.
+    /// The scene's file.
     pub path: PathBuf,
+    /// The path of the file that has the text, relative to the folder of the scene.
+    pub file: String,
     /// The text.
     pub text: Arc<str>,
+    /// The edited texts of imported files.
+    pub drafts: TextsByPath,
     /// The byte offset of the cursor, if completions are wanted.
     pub cursor: Option<usize>,
+}
+
+impl LanguageRequest {
+    /// A question about a scene without edited imports, without completions.
+    pub fn new(path: &Path, text: &str) -> Self {
+        let file = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        let (path, text, drafts) = (path.to_owned(), text.into(), TextsByPath::new());
+        Self { path, file, text, drafts, cursor: None }
+    }
 }
 
 /// The answer to a question.
@@ -25,7 +38,7 @@ pub struct LanguageRequest {
 pub struct LanguageAnswer {
     /// The question.
     pub request: LanguageRequest,
-    /// What is known of the text.
+    /// The text, parsed and checked.
     pub analysis: Arc<Analysis>,
     /// The roles of its words.
     pub tokens: Arc<[TokenSpan]>,
@@ -72,19 +85,44 @@ impl LanguageWorker {
 
 /// Answers a question. The analysis of the last answer serves again if the text is the same.
 fn answer(request: LanguageRequest, last: Option<LanguageAnswer>) -> LanguageAnswer {
-    let name = request.path.file_name().unwrap_or_default().to_string_lossy();
-    let folder = Folder::of(&request.path);
+    let (name, text) = (&request.file, &request.text);
+    let folder = EditedFolder::new(&request.path, request.drafts.clone());
+    let folder = BelowFolder { folder, below: name.rsplit_once('/').map_or("", |(it, _)| it) };
     let completions = match request.cursor {
-        Some(cursor) => complete(&name, &request.text, cursor, &folder, &[]),
+        Some(cursor) => complete(name, text, cursor, &folder, &[]),
         None => Vec::new(),
     };
     let is_same = |last: &LanguageAnswer| {
-        (&last.request.path, &last.request.text) == (&request.path, &request.text)
+        let last = &last.request;
+        (&last.path, &last.file, &last.text) == (&request.path, name, text)
+            && last.drafts == request.drafts
     };
     if let Some(last) = last.filter(is_same) {
         return LanguageAnswer { request, completions, ..last };
     }
-    let analysis = Arc::new(Analysis::new(&name, &request.text, &folder));
+    let analysis = Arc::new(Analysis::new(name, text, &folder));
     let tokens = tokens(&analysis).into();
     LanguageAnswer { request, analysis, tokens, completions }
+}
+
+/// A folder below that of the scene, for the imports of a file in it.
+struct BelowFolder<'a> {
+    folder: EditedFolder,
+    below: &'a str,
+}
+
+impl BelowFolder<'_> {
+    fn path(&self, path: &str) -> String {
+        if self.below.is_empty() { path.to_owned() } else { format!("{}/{path}", self.below) }
+    }
+}
+
+impl Resolver for BelowFolder<'_> {
+    fn read(&self, path: &str) -> Result<String, String> {
+        self.folder.read(&self.path(path))
+    }
+
+    fn read_bytes(&self, path: &str) -> Result<Vec<u8>, String> {
+        self.folder.read_bytes(&self.path(path))
+    }
 }

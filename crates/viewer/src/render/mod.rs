@@ -1,7 +1,9 @@
 //! The thread that draws the picture, and information about single pixels.
 
+pub mod handles;
 pub mod pacing;
 pub mod picture;
 pub mod pixel_info;
+pub mod shape_mask;
 pub mod view_painter;
 pub mod worker;

@@ -4,6 +4,7 @@ use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use sdfc::Resolver;
 use sdfc_diagnostics::{FileId, Sources, Span};
@@ -37,19 +38,74 @@ impl Document {
     }
 }
 
+/// Texts by the path of their file, relative to the folder of the scene.
+pub type TextsByPath = BTreeMap<String, Arc<str>>;
+
+/// The folder of a scene, with edited texts in place of some of its files.
+#[derive(Clone, Debug)]
+pub struct EditedFolder {
+    folder: Folder,
+    drafts: TextsByPath,
+}
+
+impl EditedFolder {
+    /// The folder of the scene at `path`.
+    pub fn new(path: &Path, drafts: TextsByPath) -> Self {
+        Self { folder: Folder::of(path), drafts }
+    }
+
+    /// The edited texts.
+    pub fn drafts(&self) -> &TextsByPath {
+        &self.drafts
+    }
+
+    /// The text of a file as it is on disk; `None` if it cannot be read.
+    pub fn text_on_disk(&self, path: &str) -> Option<Arc<str>> {
+        self.folder.read(path).ok().map(Arc::from)
+    }
+}
+
+impl Resolver for EditedFolder {
+    fn read(&self, path: &str) -> Result<String, String> {
+        match self.drafts.get(path) {
+            Some(draft) => Ok(draft.to_string()),
+            None => self.folder.read(path),
+        }
+    }
+
+    fn read_bytes(&self, path: &str) -> Result<Vec<u8>, String> {
+        self.folder.read_bytes(path)
+    }
+}
+
 /// Reads imported files for the compiler, and records which ones were read and a hash of each.
 /// Missing files are recorded too, since they may be created later.
 #[derive(Debug)]
 pub struct Imports {
-    folder: Folder,
+    folder: EditedFolder,
     /// Key: path, and true if read as bytes. Value: a hash of the result.
     reads: RefCell<BTreeMap<(String, bool), u64>>,
+    texts: RefCell<TextsByPath>,
 }
 
 impl Imports {
-    /// The imports of the scene at `path`; none has been read yet.
-    pub fn new(path: &Path) -> Self {
-        Self { folder: Folder::of(path), reads: RefCell::default() }
+    /// The imports of a scene; none has been read yet.
+    pub fn new(folder: EditedFolder) -> Self {
+        Self { folder, reads: RefCell::default(), texts: RefCell::default() }
+    }
+
+    /// The texts that were read.
+    pub fn texts(&self) -> TextsByPath {
+        self.texts.borrow().clone()
+    }
+
+    /// The texts that were read, as they are on disk.
+    pub fn files(&self) -> BTreeMap<String, Option<Arc<str>>> {
+        let on_disk = |(path, text): (String, Arc<str>)| match self.folder.drafts.get(&path) {
+            Some(_) => (path.clone(), self.folder.text_on_disk(&path)),
+            None => (path, Some(text)),
+        };
+        self.texts().into_iter().map(on_disk).collect()
     }
 
     /// Returns true if reading every recorded file again would give the same result.
@@ -66,7 +122,7 @@ impl Imports {
 
     /// The folders in which a change can change the scene: its own and those of its imports.
     pub fn folders(&self) -> BTreeSet<PathBuf> {
-        let root = self.folder.path();
+        let root = self.folder.folder.path();
         let reads = self.reads.borrow();
         let parents = reads.keys().filter_map(|(path, _)| root.join(path).parent().map(existing));
         [existing(root)].into_iter().chain(parents).collect()
@@ -81,6 +137,9 @@ impl Resolver for Imports {
     fn read(&self, path: &str) -> Result<String, String> {
         let text = self.folder.read(path);
         self.record(path, false, &text);
+        if let Ok(text) = &text {
+            self.texts.borrow_mut().insert(path.to_owned(), text.as_str().into());
+        }
         text
     }
 
@@ -95,6 +154,11 @@ fn hash(value: &impl Hash) -> u64 {
     let mut hasher = DefaultHasher::new();
     value.hash(&mut hasher);
     hasher.finish()
+}
+
+/// The folder to watch for a scene whose imports are not known.
+pub fn folders_of(path: &Path) -> BTreeSet<PathBuf> {
+    [existing(Folder::of(path).path())].into()
 }
 
 /// The folder itself, or its nearest ancestor that exists.
@@ -141,7 +205,8 @@ mod tests {
     fn the_nearest_existing_folder_of_a_missing_import_is_watched() {
         let root = tempfile::tempdir().unwrap();
         std::fs::create_dir(root.path().join("parts")).unwrap();
-        let imports = Imports::new(&root.path().join("scene.sdf"));
+        let imports =
+            Imports::new(EditedFolder::new(&root.path().join("scene.sdf"), TextsByPath::new()));
         assert!(imports.read("parts/gear.sdf").is_err());
         assert!(imports.read("deep/er/wheel.sdf").is_err());
         let expected = [root.path().to_owned(), root.path().join("parts")];

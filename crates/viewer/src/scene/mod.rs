@@ -3,6 +3,8 @@
 pub mod distance_quality;
 pub mod document;
 pub mod field_probe;
+pub mod handle_values;
+pub mod line_endings;
 pub mod materials;
 pub mod model;
 pub mod number_text;

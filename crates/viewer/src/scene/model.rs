@@ -8,6 +8,7 @@ use sdfc_graph::{FrameInput, Node, Param, Program, reachable};
 use sdfc_march::MethodParameter;
 use sdfc_render::{CpuScene, Pipeline};
 
+use crate::scene::document::TextsByPath;
 use crate::scene::field_probe::FieldProbe;
 use crate::scene::shapes::ShapeIndex;
 use crate::scene::source_numbers::SourceNumber;
@@ -41,6 +42,8 @@ pub struct Model {
     pub scene: Arc<Scene>,
     /// Its source.
     pub source: String,
+    /// The texts of the files that it imports, by their path beside the scene.
+    pub imports: Arc<TextsByPath>,
     /// The numbers of its source that can change, in the order of their positions.
     pub numbers: Vec<SourceNumber>,
     /// The pipeline or CPU renderer that draws it.
@@ -75,6 +78,11 @@ pub struct Model {
 }
 
 impl Model {
+    /// The text of an imported file that was compiled with the scene; `None` for other files.
+    pub fn import_text(&self, path: &str) -> Option<&str> {
+        self.imports.get(path).map(|text| &**text)
+    }
+
     /// The params that the scene declares.
     pub fn declared(&self) -> &[Param] {
         let count = self.scene.params().len() - self.scene.live_literals().len();

@@ -59,16 +59,18 @@ impl ShapeClassifier {
                 next.extend(children(shape));
             }
         }
-        Self::of(scene, leaves)
+        Self::of_shapes(scene, leaves)
     }
 
     /// Classifies by the operands of the hard unions at the root of the scene.
     pub fn operands(scene: &Scene) -> Self {
         let report = scene.report();
-        Self::of(scene, report.analytic.iter().chain(&report.marched).copied().collect())
+        Self::of_shapes(scene, report.analytic.iter().chain(&report.marched).copied().collect())
     }
 
-    fn of(scene: &Scene, mut shapes: Vec<ShapeId>) -> Self {
+    /// Classifies by these shapes. A point that belongs to another shape has none. A shape inside
+    /// another one of them does not count.
+    pub fn of_shapes(scene: &Scene, mut shapes: Vec<ShapeId>) -> Self {
         // Equal shapes are one shape, even if the scene writes them several times.
         shapes.sort_unstable();
         shapes.dedup();

@@ -61,6 +61,54 @@ impl SourceNumber {
     }
 }
 
+/// A number in a text, with its sign.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WrittenNumber {
+    /// The bytes that another value replaces: the literal with its sign.
+    pub range: Range<usize>,
+    /// The literal without its sign.
+    pub literal: String,
+    /// Its value with its sign, in the unit of the literal.
+    pub value: f64,
+    /// The number of digits behind the point.
+    pub decimals: usize,
+    unit: String,
+    wants_parentheses: bool,
+}
+
+impl WrittenNumber {
+    /// The text with another value in it.
+    pub fn with_value(&self, number: &str) -> String {
+        let text = format!("{number}{}", self.unit);
+        if text.starts_with('-') && self.wants_parentheses { format!("({text})") } else { text }
+    }
+}
+
+/// The number that an offset of a text is in or beside.
+pub fn number_around(text: &str, offset: usize) -> Option<WrittenNumber> {
+    let tokens = tokens(text);
+    let is_under = |(class, range): &Token| {
+        *class == Class::Number && (range.start..=range.end).contains(&offset)
+    };
+    let at = tokens.iter().position(is_under)?;
+    let (_, own) = tokens.get(at)?;
+    let literal = text.get(own.clone())?;
+    let number_end = (1..=literal.len())
+        .rev()
+        .find(|end| literal.get(..*end).is_some_and(|part| part.parse::<f64>().is_ok()))?;
+    let (digits, unit) = literal.split_at(number_end);
+    let value: f64 = digits.parse().ok()?;
+    let sign = sign_of(text, &tokens, at);
+    Some(WrittenNumber {
+        range: sign.unwrap_or(own.start)..own.end,
+        literal: literal.to_owned(),
+        value: if sign.is_some() { -value } else { value },
+        decimals: digits.split_once('.').map_or(0, |(_, decimals)| decimals.len()),
+        unit: unit.to_owned(),
+        wants_parentheses: sign.is_none() && is_operand(text, &tokens, at),
+    })
+}
+
 /// The numbers of a source, in the order of their positions.
 pub fn source_numbers<'a>(
     source: &str,

@@ -56,6 +56,11 @@ impl Draft {
         }
     }
 
+    /// Restores an edited text, and the text of the file that it replaces.
+    pub fn restore(&mut self, text: &str, base: &str) {
+        self.edited = (*text != *self.file).then(|| [text.into(), base.into()]);
+    }
+
     /// Gives up the edited text.
     pub fn discard(&mut self) {
         self.edited = None;

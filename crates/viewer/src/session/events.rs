@@ -5,7 +5,7 @@ use std::sync::Arc;
 use sdfc_render::Pose;
 
 use super::Session;
-use crate::compile::request::CompileEvent;
+use crate::compile::request::{CompileEvent, FileTexts};
 use crate::render::picture::RenderEvent;
 use crate::scene::model::Model;
 use crate::session::orbit_camera::OrbitCamera;
@@ -33,7 +33,8 @@ impl Session {
             self.language = Some(answer);
             changed = true;
         }
-        changed | self.accuracy.poll()
+        changed |= self.entry_pictures.poll() | self.handles.poll();
+        changed | self.lit_shapes.poll() | self.accuracy.poll()
     }
 
     fn handle_compile_event(&mut self, event: CompileEvent) {
@@ -45,10 +46,11 @@ impl Session {
                 self.watch_own_folder();
             }
             CompileEvent::BuildingPipeline => self.building = true,
-            CompileEvent::FileChanged(file) => self.edit(|draft| draft.set_file(file)),
-            CompileEvent::Compiled { text, file, diagnostics, folders, draws: _ } => {
-                self.diagnosed = text;
-                file.into_iter().for_each(|file| self.edit(|draft| draft.set_file(file)));
+            CompileEvent::FilesChanged(files) => self.set_files(files),
+            CompileEvent::Compiled { text, imports, files, diagnostics, folders, draws: _ } => {
+                self.set_files(files);
+                self.tabs.keep_imports(&imports);
+                (self.diagnosed, self.diagnosed_imports) = (text, imports);
                 (self.diagnostics, self.building, self.problem) = (diagnostics, false, None);
                 let refused = self.watcher.set_folders(&folders);
                 if let Some(folder) = refused.first() {
@@ -63,6 +65,12 @@ impl Session {
             CompileEvent::Failed(why) => (self.building, self.problem) = (false, Some(why)),
             CompileEvent::Ready(model) => self.set_model(model),
         }
+    }
+
+    /// Records the texts of the files on disk.
+    fn set_files(&mut self, files: FileTexts) {
+        self.tabs.set_files(files.imports);
+        self.edit(|draft| files.scene.into_iter().for_each(|file| draft.set_file(file)));
     }
 
     fn set_model(&mut self, model: Arc<Model>) {

@@ -4,9 +4,15 @@ mod camera_control;
 pub mod clock;
 pub mod draft;
 mod events;
+pub mod handle_state;
+mod handles;
+mod lit_shapes;
+mod lit_state;
 pub mod orbit_camera;
 pub mod save_state;
 mod saving;
+mod shown_text;
+pub mod tabs;
 mod text;
 
 use std::collections::BTreeMap;
@@ -24,17 +30,23 @@ use crate::compile::request::{BuildRequest, CompileEvent};
 use crate::compile::worker::CompileWorker;
 use crate::export::exporter::ExportOutcome;
 use crate::export::worker::ExportWorker;
+use crate::language::entry_pictures::EntryPictures;
 use crate::language::worker::{LanguageAnswer, LanguageRequest, LanguageWorker};
+use crate::render::handles::HandleWorker;
 use crate::render::picture::{Picture, RenderEvent, RenderRequest};
 use crate::render::pixel_info::PixelInfo;
+use crate::render::shape_mask::MaskWorker;
 use crate::render::worker::RenderWorker;
-use crate::scene::document::{Imports, path_of};
+use crate::scene::document::{TextsByPath, folders_of, path_of};
 use crate::scene::model::Model;
 use crate::scene::param_values::ParamValues;
 use crate::session::clock::Clock;
 use crate::session::draft::Draft;
+use crate::session::handle_state::ValueHandles;
+use crate::session::lit_state::LitShapes;
 use crate::session::orbit_camera::{CameraState, OrbitCamera};
 use crate::session::save_state::Saving;
+use crate::session::tabs::Tabs;
 use crate::views::mode::ViewMode;
 use crate::views::slice_plane::SlicePlane;
 
@@ -59,6 +71,10 @@ pub struct Session {
     language_request: Option<LanguageRequest>,
     /// The last answer of the language service, which may be about an earlier text.
     pub language: Option<LanguageAnswer>,
+    /// Pictures of library entries.
+    pub entry_pictures: EntryPictures,
+    /// True if a text is formatted when it is saved.
+    pub format_on_save: bool,
     watcher: FileWatcher,
     /// The request that a change on disk repeats, shared with the watcher's thread.
     repeated_build: Arc<Mutex<BuildRequest>>,
@@ -88,12 +104,16 @@ pub struct Session {
     pub model: Option<Arc<Model>>,
     /// The text of the scene: that of the file, or one that was edited in the window.
     draft: Draft,
+    /// The texts of other files.
+    tabs: Tabs,
     /// Whether the changed values are being written to the file.
     saving: Saving,
     /// Errors and warnings of the text that was compiled last.
     pub diagnostics: SceneDiagnostics,
     /// That text.
     diagnosed: Arc<str>,
+    /// The texts of the imported files that were compiled with it.
+    diagnosed_imports: TextsByPath,
     /// Why there is no newer model, apart from diagnostics.
     pub problem: Option<String>,
     /// Why the last picture could not be drawn.
@@ -102,6 +122,9 @@ pub struct Session {
     pub building: bool,
     /// The last picture.
     pub picture: Option<Box<Picture>>,
+    lit_shapes: LitShapes,
+    /// Handles in the picture.
+    pub handles: ValueHandles,
     /// The number of pictures received.
     pub picture_count: u64,
     /// Messages for the status line; the window takes them out.
@@ -136,6 +159,14 @@ impl Session {
         let (sender, language_answers) = channel();
         let wake_window = Arc::clone(&wake);
         let language_worker = LanguageWorker::new(sender, move || wake_window())?;
+        let (sender, masks) = channel();
+        let wake_window = Arc::clone(&wake);
+        let lit_shapes = LitShapes::new(MaskWorker::new(sender, move || wake_window())?, masks);
+        let (sender, answers) = channel();
+        let wake_window = Arc::clone(&wake);
+        let handles = ValueHandles::new(HandleWorker::new(sender, move || wake_window())?, answers);
+        let wake_window = Arc::clone(&wake);
+        let entry_pictures = EntryPictures::new(move || wake_window())?;
         let accuracy = AccuracyChecks::new(move || wake())?;
         let repeated_build = Arc::new(Mutex::new(build.clone()));
         let (requests, repeated) = (compile_worker.requests(), Arc::clone(&repeated_build));
@@ -152,6 +183,8 @@ impl Session {
             language_answers,
             language_request: None,
             language: None,
+            entry_pictures,
+            format_on_save: false,
             watcher,
             repeated_build,
             camera: None,
@@ -167,13 +200,17 @@ impl Session {
             refine: true,
             model: None,
             draft: Draft::default(),
+            tabs: Tabs::default(),
             saving: Saving::default(),
             diagnostics: SceneDiagnostics::default(),
             diagnosed: Arc::default(),
+            diagnosed_imports: TextsByPath::new(),
             problem: None,
             render_error: None,
             building: false,
             picture: None,
+            lit_shapes,
+            handles,
             picture_count: 0,
             messages: Vec::new(),
             accuracy,
@@ -211,6 +248,7 @@ impl Session {
         self.build = BuildRequest {
             path,
             draft: None,
+            imports: TextsByPath::new(),
             method: None,
             parallel: None,
             values: CompileValues::new(),
@@ -221,6 +259,7 @@ impl Session {
         (self.diagnostics, self.problem, self.render_error) =
             (SceneDiagnostics::default(), None, None);
         (self.draft, self.saving) = (Draft::default(), Saving::default());
+        self.tabs = Tabs::default();
         (self.follows_scene, self.fitted, self.tolerance) = (true, None, 1.0);
         self.accuracy.reset();
         self.watch_own_folder();
@@ -366,7 +405,7 @@ impl Session {
     }
 
     fn watch_own_folder(&mut self) {
-        let own = Imports::new(&self.build.path).folders();
+        let own = folders_of(&self.build.path);
         self.watcher.set_folders(&own);
     }
 

@@ -4,12 +4,16 @@
 use std::ops::Range;
 use std::sync::Arc;
 
+use sdfc_ide::Location;
+
 use super::Session;
 use crate::compile::diagnostics::{ShownDiagnostic, ShownFix};
-use crate::language::worker::LanguageRequest;
+use crate::language::worker::{LanguageAnswer, LanguageRequest};
 use crate::render::pixel_info::PixelInfo;
 use crate::scene::document::with_replacements;
+use crate::scene::model::Model;
 use crate::session::draft::Draft;
+use crate::session::tabs::TabFile;
 
 impl Session {
     /// The text of the scene and of its file.
@@ -25,40 +29,95 @@ impl Session {
     /// Changes the text of the scene, in the window or in the file, and compiles it.
     pub fn edit(&mut self, change: impl FnOnce(&mut Draft)) {
         change(&mut self.draft);
+        self.compile_texts();
+    }
+
+    /// Compiles the texts as they are now, unless they were compiled last.
+    pub(super) fn compile_texts(&mut self) {
         let draft = self.draft.is_edited().then(|| Arc::clone(self.draft.text()));
-        self.update_build(|build| build.draft = draft);
+        let imports = self.tabs.edited();
+        self.update_build(|build| (build.draft, build.imports) = (draft, imports));
     }
 
-    /// The range of the text that makes the shape at a position of the picture, given as in
-    /// [`pixel_info`](Self::pixel_info). `None` if the text is not that of the picture.
-    pub fn code_at(&self, position: [f64; 2]) -> Option<Range<usize>> {
+    /// The file and the range of its text that make the shape at a position of the picture, given
+    /// as in [`pixel_info`](Self::pixel_info). `None` if the text is not that of the picture.
+    pub fn code_at(&self, position: [f64; 2]) -> Option<(TabFile, Range<usize>)> {
         let picture = self.picture.as_deref()?;
-        let (file, range) = PixelInfo::at(picture, position)?.call?;
-        let own = self.path().file_name().unwrap_or_default().to_string_lossy();
-        (file == own && picture.request.model.source == **self.text()).then_some(range)
+        let (name, range) = PixelInfo::at(picture, position)?.call?;
+        let file = self.file_named(&name);
+        let compiled = self.compiled_text(&picture.request.model, &file)?;
+        (*compiled == **self.text_of(&file)?).then_some((file, range))
     }
 
-    /// Asks the language service about the text, unless it was asked the same last.
+    /// The text of a file that was compiled to a model; `None` for a file of the library.
+    pub(super) fn compiled_text<'m>(&self, model: &'m Model, file: &TabFile) -> Option<&'m str> {
+        match file {
+            TabFile::Scene => Some(&model.source),
+            TabFile::Import(path) => model.import_text(path),
+            TabFile::Library(_) => None,
+        }
+    }
+
+    /// Asks the language service about the shown text, unless it was asked the same last.
     pub fn ask_about_text(&mut self, cursor: Option<usize>) {
-        let (path, text) = (self.path().to_owned(), Arc::clone(self.text()));
-        let request = LanguageRequest { path, text, cursor };
+        let file = self.shown_file().name(self.path());
+        let request = LanguageRequest {
+            path: self.path().to_owned(),
+            file,
+            text: Arc::clone(self.shown_text()),
+            drafts: self.tabs.edited(),
+            cursor,
+        };
         if self.language_request.as_ref() != Some(&request) {
             self.language_request = Some(request.clone());
             self.language_worker.send(request);
         }
     }
 
-    /// The errors and warnings of the text as it is now; none while it is being compiled.
-    pub fn diagnostics_of_text(&self) -> impl Iterator<Item = &ShownDiagnostic> {
-        let is_current = self.diagnosed == *self.text();
-        let own = self.path().file_name().unwrap_or_default().to_string_lossy();
-        self.diagnostics.all.iter().filter(move |found| is_current && found.file == own)
+    /// The answer of the language service about the shown text; `None` until it is there.
+    pub fn answer_about_text(&self) -> Option<&LanguageAnswer> {
+        let answer = self.language.as_ref()?;
+        let file = self.shown_file().name(self.path());
+        let is_current = answer.request.file == file && answer.request.text == *self.shown_text();
+        is_current.then_some(answer)
     }
 
-    /// Makes a change that one of the [diagnostics of the text](Self::diagnostics_of_text)
-    /// proposes.
-    pub fn apply_fix(&mut self, fix: &ShownFix) {
-        let text = with_replacements(self.text(), &fix.edits);
-        self.edit(|draft| draft.set_text(&text));
+    /// The errors and warnings of the shown text; none while it is being compiled.
+    pub fn diagnostics_of_text(&self) -> impl Iterator<Item = &ShownDiagnostic> {
+        let (file, name) = (self.shown_file(), self.shown_file().name(self.path()));
+        let is_current = self.is_diagnosed(file);
+        self.diagnostics.all.iter().filter(move |found| is_current && found.file == name)
+    }
+
+    /// Returns true if the diagnostics are about the text of a file as it is now.
+    pub fn has_diagnosed_text(&self, name: &str) -> bool {
+        self.is_diagnosed(&self.file_named(name))
+    }
+
+    fn file_named(&self, name: &str) -> TabFile {
+        let location = Location { file: name.to_owned(), start: 0, end: 0 };
+        TabFile::of(&location, self.path())
+    }
+
+    fn is_diagnosed(&self, file: &TabFile) -> bool {
+        let compiled = match file {
+            TabFile::Scene => Some(&self.diagnosed),
+            TabFile::Import(path) => self.diagnosed_imports.get(path),
+            TabFile::Library(_) => None,
+        };
+        compiled.is_some() && compiled == self.text_of(file)
+    }
+
+    /// Makes a change of a file that one of the diagnostics proposes, and shows the file. Returns
+    /// false if the file has another text than the one that was diagnosed.
+    pub fn apply_fix(&mut self, name: &str, fix: &ShownFix) -> bool {
+        let file = self.file_named(name);
+        let Some(text) = self.text_of(&file).filter(|_| self.is_diagnosed(&file)) else {
+            return false;
+        };
+        let text = with_replacements(text, &fix.edits);
+        self.edit_file(&file, |draft| draft.set_text(&text));
+        self.show_file(file);
+        true
     }
 }

@@ -6,6 +6,7 @@
 
 mod display;
 mod drag_and_drop;
+mod unsaved_text;
 
 use std::cell::Cell;
 use std::process::{ExitCode, Stdio};
@@ -27,7 +28,7 @@ fn main() -> ExitCode {
     let arguments = Arguments::from_args();
     let missing: Vec<&str> = ["Xvfb", "xdotool"].into_iter().filter(|it| !is_there(it)).collect();
     let required = std::env::var_os("SDFC_REQUIRE_GPU").is_some();
-    let trials: [(&str, Test); 14] = [
+    let trials: [(&str, Test); 15] = [
         ("an_edit_is_shown_and_a_broken_scene_keeps_the_picture", edits),
         ("the_camera_follows_the_pointer", camera),
         ("a_deleted_file_is_shown_again_when_it_comes_back", comes_back),
@@ -39,6 +40,7 @@ fn main() -> ExitCode {
         ("closing_the_window_stores_the_settings", closing),
         ("a_window_whose_device_is_lost_is_replaced", lost),
         ("a_device_loss_within_a_frame_stores_the_settings", lost_midway),
+        ("typed_text_survives_a_device_loss", unsaved_text::survives_a_loss_within_a_frame),
         ("an_idle_window_uses_no_cpu_time", idle),
         ("without_vulkan_the_cpu_draws_and_opengl_shows_the_window", no_vulkan),
         ("without_any_driver_the_program_says_what_to_install", no_driver),

@@ -3,7 +3,7 @@
 use eframe::egui::{self, Key, Modifiers, Pos2, RichText, Ui};
 use sdfc_ide::Completion;
 
-use super::theme;
+use crate::app::theme;
 
 /// The list, while it is open.
 #[derive(Clone, Copy, Debug, Default)]
@@ -14,6 +14,14 @@ pub struct CompletionList {
 }
 
 impl CompletionList {
+    /// Closes the list if Esc is pressed. Returns true if it was open.
+    pub fn close_by_key(&mut self, ui: &Ui) -> bool {
+        let closes =
+            self.typing && ui.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Escape));
+        self.typing &= !closes;
+        closes
+    }
+
     /// Handles the keys of the list before the editor gets them. Returns the accepted completion.
     pub fn accept_by_key<'c>(
         &mut self,
@@ -32,9 +40,6 @@ impl CompletionList {
             self.chosen += items.len() - 1;
         }
         self.chosen %= items.len();
-        if pressed(Key::Escape) {
-            self.typing = false;
-        }
         if pressed(Key::Tab) { items.get(self.chosen).copied() } else { None }
     }
 

@@ -2,24 +2,24 @@
 
 use std::collections::BTreeMap;
 use std::ops::Range;
+use std::sync::Arc;
 
-use eframe::egui::text::{LayoutJob, TextFormat};
+use eframe::egui::text::{ByteIndex, LayoutJob, TextFormat};
 use eframe::egui::{Color32, FontId, Stroke};
-use sdfc_ide::TokenRole;
+use sdfc_ide::{TokenRole, TokenSpan};
 use sdfc_syntax::{Class, classes};
 
-use super::theme::Palette;
+use crate::app::theme::Palette;
 use crate::compile::diagnostics::ShownDiagnostic;
 use crate::compile::text_diff::TextDiff;
-use crate::language::worker::LanguageAnswer;
 
 /// The role of each word by its first byte.
-pub type Roles = BTreeMap<usize, TokenRole>;
+type Roles = BTreeMap<usize, TokenRole>;
 
 /// The roles of the words of a text, as far as the answer about an earlier text tells.
-pub fn roles(answer: Option<&LanguageAnswer>, text: &str) -> Roles {
-    let Some(answer) = answer else { return Roles::new() };
-    let diff = TextDiff::new(&answer.request.text, text);
+fn roles(answer: Option<&(Arc<str>, Arc<[TokenSpan]>)>, text: &str) -> Roles {
+    let Some((earlier, tokens)) = answer else { return Roles::new() };
+    let diff = TextDiff::new(earlier, text);
     let moved = |range: &Range<usize>| -> Option<usize> {
         let [start, old_end] = [diff.start as usize, diff.old_end as usize];
         match range {
@@ -30,11 +30,11 @@ pub fn roles(answer: Option<&LanguageAnswer>, text: &str) -> Roles {
             _ => None,
         }
     };
-    let tokens = answer.tokens.iter();
-    tokens.filter_map(|token| Some((moved(&token.range)?, token.role))).collect()
+    tokens.iter().filter_map(|token| Some((moved(&token.range)?, token.role))).collect()
 }
 
 /// An underlined range.
+#[derive(Clone, PartialEq)]
 pub struct Mark {
     range: Range<usize>,
     color: Color32,
@@ -50,21 +50,62 @@ impl Mark {
     }
 }
 
-/// The text with its colours: the roles of its words, underlined marks and a lit range. Lines are
-/// not wrapped.
-pub fn highlighted(
-    text: &str,
-    (roles, marks, lit): (&Roles, &[Mark], Option<&Range<usize>>),
-    palette: &Palette,
-    font: &FontId,
-) -> LayoutJob {
+/// The layout of a text, kept while nothing that it shows changes.
+#[derive(Default)]
+pub struct LayoutCache(Option<(LayoutKey, LayoutJob)>);
+
+/// Everything that the layout of a text depends on.
+#[derive(Clone, PartialEq)]
+pub struct LayoutKey {
+    /// The text.
+    pub text: String,
+    /// The answer of the language service with the roles of its words.
+    pub roles: Option<(Arc<str>, Arc<[TokenSpan]>)>,
+    /// Underlined ranges.
+    pub marks: Vec<Mark>,
+    /// The code of a shape that was clicked.
+    pub lit: Option<Range<usize>>,
+    /// What a search has found, in order.
+    pub found: Arc<[Range<usize>]>,
+    /// The chosen one of them.
+    pub current: Option<Range<usize>>,
+    /// True for the dark theme.
+    pub is_dark: bool,
+    /// The font.
+    pub font: FontId,
+}
+
+impl LayoutCache {
+    /// The layout for a key, which is made if the last one was for another.
+    pub fn layout(&mut self, key: &LayoutKey, palette: &Palette) -> LayoutJob {
+        match &self.0 {
+            Some((last, job)) if last == key => job.clone(),
+            Some(_) | None => {
+                let job = highlighted(key, palette);
+                self.0 = Some((key.clone(), job.clone()));
+                job
+            }
+        }
+    }
+}
+
+impl std::fmt::Debug for LayoutCache {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_tuple("LayoutCache").field(&self.0.is_some()).finish()
+    }
+}
+
+/// The text with its colours. Lines are not wrapped.
+fn highlighted(key: &LayoutKey, palette: &Palette) -> LayoutJob {
+    let LayoutKey { text, marks, lit, found, current, font, .. } = key;
+    let roles = roles(key.roles.as_ref(), text);
     let mut job = LayoutJob::default();
     job.wrap.max_width = f32::INFINITY;
     let mut ends: Vec<usize> = Vec::new();
     let tokens = classes(text);
     ends.extend(tokens.iter().flat_map(|(_, range)| [range.start, range.end]));
     ends.extend(marks.iter().flat_map(|mark| [mark.range.start, mark.range.end]));
-    ends.extend(lit.into_iter().flat_map(|range| [range.start, range.end]));
+    ends.extend(lit.iter().chain(found.iter()).flat_map(|range| [range.start, range.end]));
     ends.extend([0, text.len()]);
     ends.retain(|end| text.is_char_boundary(*end));
     ends.sort_unstable();
@@ -86,12 +127,28 @@ pub fn highlighted(
         if let Some(mark) = marks.iter().find(|mark| mark.range.contains(&start)) {
             format.underline = Stroke::new(1.5, mark.color);
         }
-        if lit.is_some_and(|lit| lit.contains(&start)) {
+        if lit.as_ref().is_some_and(|lit| lit.contains(&start)) {
             format.background = palette.chosen;
         }
-        job.append(&text[start..end], 0.0, format);
+        let next = found.partition_point(|range| range.end <= start);
+        if let Some(range) = found.get(next).filter(|range| range.contains(&start)) {
+            let is_current = current.as_ref() == Some(range);
+            format.background = if is_current { palette.found } else { palette.line };
+        }
+        append(&mut job, &text[start..end], format);
     }
     job
+}
+
+/// Appends a text; one in the same format as the last one becomes a part of it.
+fn append(job: &mut LayoutJob, text: &str, format: TextFormat) {
+    match job.sections.last_mut() {
+        Some(last) if last.format == format => {
+            job.text.push_str(text);
+            last.byte_range.end = ByteIndex(job.text.len());
+        }
+        Some(_) | None => job.append(text, 0.0, format),
+    }
 }
 
 fn color_of(class: Class, palette: &Palette) -> Color32 {
@@ -122,7 +179,7 @@ fn color_of_role(role: TokenRole, palette: &Palette) -> Color32 {
 
 #[cfg(test)]
 mod tests {
-    use std::path::PathBuf;
+    use std::path::Path;
     use std::sync::mpsc::channel;
 
     use super::*;
@@ -133,11 +190,11 @@ mod tests {
     fn roles_move_with_their_words_until_there_is_a_new_answer() {
         let (sender, answers) = channel();
         let worker = LanguageWorker::new(sender, || {}).unwrap();
-        let (path, text) = (PathBuf::from("a.sdf"), "let a = 1\nsphere(a) | box(2)\n");
-        worker.send(LanguageRequest { path, text: text.into(), cursor: None });
+        let (path, text) = (Path::new("a.sdf"), "let a = 1\nsphere(a) | box(2)\n");
+        worker.send(LanguageRequest { cursor: None, ..LanguageRequest::new(path, text) });
         let answer = answers.recv_timeout(TIMEOUT).unwrap();
         let edited = "let a = 1\nsphere(a + a) | box(2)\n";
-        let roles = roles(Some(&answer), edited);
+        let roles = roles(Some(&(answer.request.text, answer.tokens)), edited);
         for word in ["sphere", "box"] {
             assert_eq!(roles.get(&edited.find(word).unwrap()), Some(&TokenRole::Shape), "{word}");
         }

@@ -1,7 +1,7 @@
 //! The scene's text as rows in which numbers can be dragged.
 
-use super::number_widget::number_drag;
-use super::theme;
+use crate::app::number_widget::number_drag;
+use crate::app::theme;
 use crate::scene::model::Model;
 use crate::scene::source_numbers::SourceNumber;
 use crate::session::Session;

@@ -2,12 +2,13 @@
 
 use eframe::egui::{RichText, Ui};
 
-use super::action::Action;
-use super::code_editor::CodeEditor;
-use super::{code_numbers, number_buttons, theme};
+use super::editor::CodeEditor;
+use super::{menu, numbers, tab_bar};
+use crate::app::action::Action;
+use crate::app::{number_buttons, theme};
 use crate::session::Session;
 use crate::session::draft::Draft;
-use crate::session::save_state::Saved;
+use crate::session::tabs::TabFile;
 
 /// The longest text that can be edited in the window, in bytes. Longer ones are shown as rows.
 const MAX_EDITED_BYTES: usize = 256 << 10;
@@ -30,7 +31,8 @@ pub fn show(
     actions: &mut Vec<Action>,
 ) {
     ui.add_space(4.0);
-    let is_small = session.text().len() <= MAX_EDITED_BYTES;
+    tab_bar::show(ui, session);
+    let is_small = session.shown_text().len() <= MAX_EDITED_BYTES;
     ui.horizontal_wrapped(|ui| {
         let before = *mode;
         let edits = ui.add_enabled_ui(is_small, |ui| {
@@ -39,12 +41,20 @@ pub fn show(
         });
         let why = format!("Texts of more than {MAX_EDITED_BYTES} bytes are edited elsewhere.");
         edits.response.on_disabled_hover_text(why);
-        let text = "Drag a number to change it, or click it to type.";
-        ui.selectable_value(mode, CodeMode::Numbers, "Drag numbers").on_hover_text(text);
+        let text = "Drag a number of the scene to change it, or click it to type.";
+        let numbers = ui.selectable_value(mode, CodeMode::Numbers, "Drag numbers");
+        if numbers.on_hover_text(text).clicked() {
+            session.show_file(TabFile::Scene);
+        }
+        // Numbers of other files are edited.
+        if *session.shown_file() != TabFile::Scene {
+            *mode = CodeMode::Edit;
+        }
         if before == CodeMode::Numbers && *mode == CodeMode::Edit {
             session.write_numbers_into_text();
         }
         if *mode == CodeMode::Edit && is_small {
+            menu::show(ui, session, editor);
             editor.color_button(ui, session);
         }
         edited_state(ui, session);
@@ -55,31 +65,36 @@ pub fn show(
     {
         number_buttons::show(ui, session, &model, actions);
     }
-    if session.draft().is_in_conflict() {
+    if session.shown_draft().is_some_and(Draft::is_in_conflict) {
         conflict(ui, session);
     }
     ui.separator();
     match mode {
         CodeMode::Edit if is_small => editor.show(ui, session),
-        CodeMode::Edit | CodeMode::Numbers => code_numbers::show(ui, session),
+        CodeMode::Edit | CodeMode::Numbers => numbers::show(ui, session),
     }
 }
 
 /// Says whether the text is saved, with a button that saves it.
 fn edited_state(ui: &mut Ui, session: &mut Session) {
-    if !session.draft().is_edited() {
+    let Some(draft) = session.shown_draft() else {
+        let text = RichText::new("a file of the library, to read").small();
+        ui.label(text.color(theme::of(ui).weak));
+        return;
+    };
+    if !draft.is_edited() {
         let text = RichText::new("type to change the scene").small().color(theme::of(ui).weak);
-        let help = "The text of the scene's file. Edits in your own editor are followed, too.";
+        let help = "The text of the file. Edits in your own editor are followed, too.";
         ui.label(text).on_hover_text(help);
         return;
     }
     let save = ui.small_button("Save");
-    if save.on_hover_text("Write the text to the scene's file (Ctrl+S).").clicked() {
-        session.save_to_file(Saved::Numbers);
+    if save.on_hover_text("Write the text to its file (Ctrl+S).").clicked() {
+        session.save_text();
     }
     let revert = ui.small_button("Revert");
     if revert.on_hover_text("Go back to the text of the file; Ctrl+Z undoes that.").clicked() {
-        session.edit(Draft::discard);
+        session.edit_shown(Draft::discard);
     }
     ui.label(RichText::new("not saved").small().color(theme::of(ui).accent));
 }
@@ -96,11 +111,11 @@ fn conflict(ui: &mut Ui, session: &mut Session) {
             .on_hover_text("Show the file's text in place of this; Ctrl+Z undoes that.")
             .clicked()
         {
-            session.edit(Draft::discard);
+            session.edit_shown(Draft::discard);
         }
         let keep = ui.small_button("Keep this text");
         if keep.on_hover_text("Saving this text then replaces the file's.").clicked() {
-            session.edit(Draft::keep);
+            session.edit_shown(Draft::keep);
         }
     });
 }

@@ -1,0 +1,95 @@
+//! Handles in the picture for the values that are selected in a panel.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+
+use super::Session;
+use crate::render::handles::{Handle, HandleRequest};
+use crate::scene::handle_values::{HandleValue, LiveParam, values_at};
+use crate::session::handle_state::{ValueHandle, ValueHandles};
+use crate::session::tabs::TabFile;
+
+impl Session {
+    /// Asks for the handles of the param under the pointer, else of the chosen one, else of the
+    /// values at the cursor.
+    pub fn select_handles(&mut self, cursor: Option<&(TabFile, usize)>) {
+        let Some(model) = self.model.clone() else { return };
+        if self.handles.is_dragged {
+            return;
+        }
+        let is_scene = *model.source == **self.text();
+        let offset = cursor.filter(|(file, _)| is_scene && *file == TabFile::Scene);
+        let looked_at = offset.map(|(_, offset)| (*offset, model.serial));
+        let handles = &mut self.handles;
+        if handles.looked_at != looked_at {
+            handles.at_cursor = looked_at.map_or(Vec::new(), |(at, _)| values_at(&model, at));
+            // The cursor was moved after the param was chosen.
+            handles.selected = handles.selected.take().filter(|_| looked_at.is_none());
+            handles.looked_at = looked_at;
+        }
+        let named = handles.hovered.as_ref().or(handles.selected.as_ref());
+        let values = match named {
+            Some(name) => vec![HandleValue::Param(name.clone())],
+            None => handles.at_cursor.clone(),
+        };
+        let live: Option<Vec<LiveParam>> =
+            values.iter().map(|value| value.live_param(&model)).collect();
+        let Some(live) = live.filter(|live| !live.is_empty()) else {
+            (handles.asked, handles.answer) = (None, None);
+            return;
+        };
+        let picture = self.picture.as_deref().filter(|picture| {
+            !picture.request.moving && picture.request.model.serial == model.serial
+        });
+        let Some(asked) = picture.map(|picture| HandleRequest::new(picture, live)) else { return };
+        if handles.asked.as_ref().is_some_and(|last| last.is_same(&asked)) {
+            return;
+        }
+        let now = |value: &HandleValue| value.get(&model, &self.param_values).unwrap_or_default();
+        handles.start = values.iter().map(now).collect();
+        handles.values = values;
+        handles.asked = Some(asked.clone());
+        handles.worker.send(asked);
+    }
+
+    /// The handles of the selected values, for those that move something that is seen.
+    pub fn value_handles(&self) -> Vec<ValueHandle> {
+        let ValueHandles { asked, answer, values, start, .. } = &self.handles;
+        let (Some(asked), Some(answer), Some(model)) = (asked, answer, &self.model) else {
+            return Vec::new();
+        };
+        let is_model = Arc::ptr_eq(&answer.request.request.model, model);
+        if !is_model || !answer.request.has_same_params(asked) {
+            return Vec::new();
+        }
+        let is_vector = answer.handles.len() == 3
+            && answer.handles.iter().all(|it| it.is_some_and(|it| it.is_translation));
+        // The arrows of a vector begin at one point, which all of its values move.
+        let common = answer.handles.first().copied().flatten().filter(|_| is_vector);
+        let mut moved = DVec3::ZERO;
+        let mut found = Vec::new();
+        for ((value, start), handle) in values.iter().zip(start).zip(&answer.handles) {
+            let number = value.get(model, &self.param_values);
+            if let (Some(number), Some(handle)) = (number, handle) {
+                let by = handle.motion * (number - start);
+                moved += by;
+                let handle = Handle { origin: handle.origin + by, ..*handle };
+                found.push(ValueHandle { value: value.clone(), number, handle });
+            }
+        }
+        if let Some(common) = common {
+            found.iter_mut().for_each(|it| it.handle.origin = common.origin + moved);
+        }
+        found
+    }
+
+    /// Changes a value as its slider does.
+    pub fn set_value(&mut self, value: &HandleValue, number: f64) {
+        if let Some(model) = self.model.clone()
+            && number.is_finite()
+        {
+            value.set(&model, &mut self.param_values, number);
+        }
+    }
+}

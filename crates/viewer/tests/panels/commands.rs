@@ -1,0 +1,100 @@
+//! What the editor does beside typing: numbers, colours, layout, pictures.
+
+use eframe::egui::accesskit::Role;
+use eframe::egui::{Event, Key, MissingGlyphPolicy, Modifiers, PointerButton, Pos2, vec2};
+use egui_kittest::kittest::Queryable;
+
+use crate::fixture::{CTRL, Fixture};
+
+const SCENE: &str = "sphere(0.5).color(rgb(0.2, 0.4, 0.6))\n\
+                     camera(eye: [0, 0, 8], target: [0, 0, 0], fov: 40deg)\n";
+
+/// The middle of a character of the text.
+fn position(fixture: &Fixture, line: usize, column: usize) -> Pos2 {
+    let rect = fixture.harness.get_by_role(Role::MultilineTextInput).rect();
+    // The size of a character of the font.
+    rect.min + vec2(7.52 * (column as f32 + 0.5), 15.0 * (line as f32 + 0.5))
+}
+
+fn text(fixture: &Fixture) -> String {
+    fixture.harness.state().opened().text().to_string()
+}
+
+fn button(fixture: &mut Fixture, at: Pos2, pressed: bool) {
+    let (button, modifiers) = (PointerButton::Primary, Modifiers::ALT);
+    fixture.harness.event(Event::PointerButton { pos: at, button, pressed, modifiers });
+    fixture.harness.run_steps(2);
+}
+
+#[test]
+fn a_number_is_dragged_with_alt_in_one_step_to_undo() {
+    let mut fixture = Fixture::of(SCENE);
+    let at = position(&fixture, 0, "sphere(0.".len());
+    fixture.harness.event(Event::ModifiersChanged(Modifiers::ALT));
+    fixture.harness.hover_at(at);
+    fixture.harness.run_steps(2);
+    button(&mut fixture, at, true);
+    for points in [10.0, 20.0, 40.0] {
+        fixture.harness.hover_at(at + vec2(points, 0.0));
+        fixture.harness.run_steps(2);
+    }
+    button(&mut fixture, at + vec2(40.0, 0.0), false);
+    fixture.harness.event(Event::ModifiersChanged(Modifiers::NONE));
+    let dragged = text(&fixture);
+    let value = dragged.split(['(', ')']).nth(1).unwrap();
+    assert!((0.52..=0.541).contains(&value.parse::<f64>().unwrap()), "{dragged}");
+    assert_eq!(dragged.replacen(value, "0.5", 1), SCENE);
+    fixture.key(Modifiers::COMMAND, Key::Z);
+    assert_eq!(text(&fixture), SCENE);
+}
+
+#[test]
+fn a_call_of_rgb_has_a_colour_button_and_stays_a_call() {
+    let mut fixture = Fixture::of(SCENE);
+    fixture.type_at_end("");
+    fixture.key(CTRL, Key::Home);
+    for _ in 0.."sphere(0.5).color(rg".len() {
+        fixture.harness.key_press(Key::ArrowRight);
+    }
+    fixture.until(|harness| harness.query_by_role(Role::ColorWell).is_some());
+    // egui's picker has a button with a sign that its fonts lack.
+    fixture.harness.ctx.set_missing_glyph_policy(MissingGlyphPolicy::Tofu);
+    fixture.harness.get_by_role(Role::ColorWell).click();
+    fixture.harness.run_steps(3);
+    // The last fields are those of the picker: red, green, blue, alpha.
+    let fields: Vec<_> = fixture.harness.get_all_by_role(Role::SpinButton).collect();
+    fields[fields.len() - 4].set_value_accesskit(255.0);
+    fixture.harness.run_steps(3);
+    assert_eq!(text(&fixture), SCENE.replace("rgb(0.2,", "rgb(1,"));
+}
+
+#[test]
+fn a_text_is_formatted_on_save_if_that_is_wanted() {
+    let mut fixture = Fixture::of(SCENE);
+    let path = fixture.folder.path().join("scene.sdf");
+    fixture.type_at_end("box( 0.1 )\n");
+    fixture.key(Modifiers::COMMAND, Key::S);
+    fixture.until(|_| std::fs::read_to_string(&path).unwrap().ends_with("box( 0.1 )\n"));
+    fixture.click("More");
+    fixture.click("Format on save");
+    fixture.key(Modifiers::NONE, Key::Escape);
+    fixture.type_at_end("box( 0.2 )\n");
+    fixture.key(Modifiers::COMMAND, Key::S);
+    let expected = format!("{SCENE}box(0.1)\nbox(0.2)\n");
+    fixture.until(|_| std::fs::read_to_string(&path).unwrap() == expected);
+    fixture.until(|harness| **harness.state().opened().text() == *expected);
+    assert!(!fixture.harness.state().opened().has_unsaved_changes());
+    // A text with syntax errors is saved as it is.
+    fixture.type_at_end("box( 0.3\n");
+    fixture.key(Modifiers::COMMAND, Key::S);
+    fixture.until(|_| std::fs::read_to_string(&path).unwrap().ends_with("box( 0.3\n"));
+}
+
+#[test]
+fn the_description_of_a_library_entry_has_its_picture() {
+    let mut fixture = Fixture::of(SCENE);
+    fixture.until(|harness| harness.state().opened().answer_about_text().is_some());
+    fixture.harness.hover_at(position(&fixture, 0, 2));
+    fixture.until(|harness| harness.query_by_label("a picture of the entry").is_some());
+    assert!(fixture.has("solid sphere("));
+}
