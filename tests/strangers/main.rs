@@ -50,12 +50,9 @@ const COLOR: u8 = 8;
 const LETTERS_OF_PAGES: [u32; 6] = [10, 20, 40, 80, 160, 320];
 const BALLS: [u32; 3] = [10, 30, 60];
 
-fn main() {
+fn main() -> std::io::Result<()> {
     if let Some(folder) = std::env::var_os("STRANGERS_SCENES") {
-        if let Err(error) = write_scenes(Path::new(&folder)) {
-            println!("{error}");
-        }
-        return;
+        return write_scenes(Path::new(&folder));
     }
     let without_gpu = testing::without_gpu();
     let trials = FORMULAS.iter().map(|formula| {
