@@ -190,8 +190,8 @@ impl Tool {
         Ok(())
     }
 
-    /// Returns true if the tool validates each of its files by itself: glslangValidator does, unless
-    /// it links them.
+    /// Returns true if the tool validates each of its files by itself. glslangValidator does,
+    /// unless it links them.
     fn takes_many_files(&self) -> bool {
         matches!(self.target, Target::Glsl | Target::GlslEs)
     }

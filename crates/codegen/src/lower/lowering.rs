@@ -19,8 +19,8 @@ use crate::error::Error;
 /// The name of the point that a function is evaluated at.
 pub(crate) const POINT: &str = "p";
 
-/// The literal for infinity: 2^127. The shortest decimal text of the largest number is above it, and
-/// some shader compilers refuse it.
+/// The literal for infinity: 2^127. The shortest decimal text of the largest number is above that
+/// number, and some shader compilers refuse it.
 const FARTHEST: f32 = f32::from_bits(0x7f00_0000);
 
 /// Makes a function of several points, by level, that returns one node's value.

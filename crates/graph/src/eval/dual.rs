@@ -1,8 +1,6 @@
 //! Forward-mode differentiation.
 
 use super::Number;
-use super::evaluator::Evaluator;
-use super::tape::POINT_LANES;
 
 /// A number and its partial derivatives with respect to the coordinates of the point, in f64.
 ///
@@ -195,9 +193,6 @@ impl Number for Dual {
 
     fn is_definitely_false(self) -> bool {
         self.value == 0.0
-    }
-    fn run(evaluator: &mut Evaluator<'_, Self>, points: &[[Self; POINT_LANES]]) {
-        evaluator.run(points);
     }
     fn element(self, list: &[f64]) -> Self {
         Self::constant_dual(self.value.element(list))

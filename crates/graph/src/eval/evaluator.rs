@@ -73,20 +73,20 @@ impl<N: Number> Evaluator<'_, N> {
     /// The roots' values at a point, in the roots' order. Lanes beyond a root's width are 0. For 2D
     /// shapes the last lane of the point is ignored.
     pub fn eval(&mut self, point: [N; 3]) -> &[[N; 4]] {
-        N::run(self, &[point]);
+        self.run(&[point], &mut NoTrace);
         self.read()
     }
 
     /// Like [`Self::eval`], for a tape made by [`Tape::for_rays`].
     pub fn eval_ray(&mut self, origin: [N; 3], direction: [N; 3]) -> &[[N; 4]] {
-        N::run(self, &[origin, direction]);
+        self.run(&[origin, direction], &mut NoTrace);
         self.read()
     }
 
     /// Like [`Self::eval`], for a tape made by [`Tape::for_surfaces`]. The normal and the direction
     /// to the eye are unit vectors.
     pub fn eval_surface(&mut self, point: [N; 3], normal: [N; 3], view: [N; 3]) -> &[[N; 4]] {
-        N::run(self, &[point, normal, view]);
+        self.run(&[point, normal, view], &mut NoTrace);
         self.read()
     }
 
@@ -101,7 +101,7 @@ impl<N: Number> Evaluator<'_, N> {
 
     /// The first lane of the first root at a point; 0 without roots.
     pub fn scalar(&mut self, point: [N; 3]) -> N {
-        N::run(self, &[point]);
+        self.run(&[point], &mut NoTrace);
         self.first()
     }
 
@@ -110,12 +110,7 @@ impl<N: Number> Evaluator<'_, N> {
         first.map_or(N::constant(0.0), |lanes| self.registers[lanes.get(0) as usize])
     }
 
-    /// Runs the tape. [`Number::run`] says why callers use that.
-    pub(super) fn run(&mut self, points: &[[N; POINT_LANES]]) {
-        self.run_traced(points, &mut NoTrace);
-    }
-
-    fn run_traced(&mut self, points: &[[N; POINT_LANES]], tracer: &mut impl Tracer<N>) {
+    fn run(&mut self, points: &[[N; POINT_LANES]], tracer: &mut impl Tracer<N>) {
         let registers = self.registers.as_mut_slice();
         let lanes = registers[self.tape.kept.len()..].iter_mut();
         for (register, &lane) in lanes.zip(points.as_flattened()) {
@@ -132,7 +127,7 @@ impl Evaluator<'_, Interval> {
     /// which jumps it leaves open.
     pub fn scalar_along(&mut self, point: [Interval; 3], path: &mut BranchPath) -> Interval {
         path.begin();
-        self.run_traced(&[point], &mut { path });
+        self.run(&[point], &mut { path });
         self.first()
     }
 }
@@ -142,7 +137,7 @@ impl Evaluator<'_, Affine> {
     /// jumps, without comparisons. The path records which jumps it leaves open.
     pub fn scalar_along(&mut self, point: [Affine; 3], path: &mut BranchPath) -> Affine {
         path.begin();
-        self.run_traced(&[point], &mut { path });
+        self.run(&[point], &mut { path });
         self.first()
     }
 }

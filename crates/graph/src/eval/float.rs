@@ -6,9 +6,7 @@
 //! and `max` return a NaN only if it is their first argument; WGSL leaves this open.
 
 use super::Number;
-use super::evaluator::Evaluator;
 use super::hash::hash;
-use super::tape::POINT_LANES;
 
 macro_rules! float {
     ($float:ident, pow: $pow:path, atan2: $atan2:path, $($name:ident: $unary:path),* $(,)?) => {
@@ -147,9 +145,6 @@ macro_rules! float {
             #[inline]
             fn is_definitely_false(self) -> bool {
                 self == 0.0
-            }
-            fn run(evaluator: &mut Evaluator<'_, Self>, points: &[[Self; POINT_LANES]]) {
-                evaluator.run(points);
             }
             fn element(self, list: &[f64]) -> Self {
                 let last = list.len().saturating_sub(1);

@@ -1,8 +1,5 @@
 //! The number types in which a graph can be evaluated.
 
-use super::evaluator::Evaluator;
-use super::tape::POINT_LANES;
-
 /// A number type: one method for each scalar operation of the closed set.
 ///
 /// Truth values are numbers: 0 is false, 1 is true (an undecided [`Interval`](super::Interval)
@@ -146,14 +143,5 @@ pub trait Number: Copy {
     /// `clamp(x, 0, 1)`
     fn saturate(self) -> Self {
         self.clamp(Self::constant(0.0), Self::constant(1.0))
-    }
-
-    /// Runs a tape at points, which fills the registers of the evaluator.
-    ///
-    /// The number types that most evaluations use define this again, with the same body. Their
-    /// definition is compiled once, in this crate. The default is compiled again in each crate that
-    /// evaluates, with that crate's level of optimisation.
-    fn run(evaluator: &mut Evaluator<'_, Self>, points: &[[Self; POINT_LANES]]) {
-        evaluator.run(points);
     }
 }

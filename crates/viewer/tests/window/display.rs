@@ -300,7 +300,19 @@ impl<'a> Window<'a> {
     /// Waits until the screen is as expected and no longer changes, and returns it.
     pub fn settled(&self, expected: impl Fn(&RgbImage) -> bool) -> Result<RgbImage, Failed> {
         // On a slow machine the next finer picture takes long.
-        const STILL: Duration = Duration::from_millis(1200);
+        self.still_for(Duration::from_millis(1200), expected)
+    }
+
+    /// Waits until the screen is as expected, and returns it. A cursor may blink in it.
+    pub fn shown(&self, expected: impl Fn(&RgbImage) -> bool) -> Result<RgbImage, Failed> {
+        self.still_for(Duration::ZERO, expected)
+    }
+
+    fn still_for(
+        &self,
+        time: Duration,
+        expected: impl Fn(&RgbImage) -> bool,
+    ) -> Result<RgbImage, Failed> {
         let start = Instant::now();
         let (mut before, mut changed) = (self.screen()?, start);
         loop {
@@ -308,7 +320,7 @@ impl<'a> Window<'a> {
             let now = self.screen()?;
             if now != before {
                 (before, changed) = (now, Instant::now());
-            } else if changed.elapsed() > STILL && expected(&now) {
+            } else if changed.elapsed() > time && expected(&now) {
                 return Ok(now);
             }
             if start.elapsed() > TIMEOUT {

@@ -1,13 +1,17 @@
 //! Shapes, and calls of everything in the catalogue.
 
+use std::ops::Range;
+
 use super::{Generator, Rate, Variable, Want};
 use crate::catalogue::{Callable, Parameter};
 use crate::kernel::{CONSTANT, RIVAL_PARAMETERS, TEXTS};
 use crate::tree::{Element, Tree};
 use crate::types::Ty;
 
-/// The most copies that one comprehension makes.
-const COPIES: u8 = 6;
+/// The numbers of copies that a comprehension makes: a few, or enough for a loop in the shader.
+const COPIES: [Range<u8>; 2] = [2..6, 16..24];
+/// The comprehensions that make many copies, in percent.
+const MANY: u8 = 15;
 
 impl Generator<'_> {
     /// Generates a solid or a region with about as many shapes as are wanted.
@@ -136,9 +140,10 @@ impl Generator<'_> {
 
     /// `for i in 0..4: shape`
     fn copies(&mut self, ty: &Ty, want: Want) -> (String, Tree) {
-        let (name, count) = (self.fresh("i"), self.rng.u8(2..COPIES));
+        let many = self.chance(MANY);
+        let (name, count) = (self.fresh("i"), self.rng.u8(COPIES[usize::from(many)].clone()));
         let (over, kind, most) = match self.rng.u8(0..3) {
-            0 => ("[0.1, 0.4, 0.7, 0.2, 1]".to_owned(), Ty::Number, 1.0),
+            0 if !many => ("[0.1, 0.4, 0.7, 0.2, 1]".to_owned(), Ty::Number, 1.0),
             _ => (format!("0..{count}"), Ty::Int, f64::from(count) - 1.0),
         };
         let condition = if self.chance(20) { format!(" if {name} != 1") } else { String::new() };

@@ -96,7 +96,7 @@ pub(crate) fn service(text: &str) -> Outcome {
         .collect();
     let compiled = compiler_errors(text);
     if let Some(missing) = compiled.symmetric_difference(&shown).next() {
-        return Err(finding("other errors", format!("{missing:?} is told by one alone")));
+        return Err(finding("other errors", format!("only one reports {missing:?}")));
     }
     for part in 0..=PLACES {
         let at = text.len() * part / PLACES;

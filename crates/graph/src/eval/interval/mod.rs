@@ -7,9 +7,7 @@ mod path;
 pub use path::BranchPath;
 
 use super::Number;
-use super::evaluator::Evaluator;
 use super::hash::{HASH_COUNT, hash};
-use super::tape::POINT_LANES;
 
 /// An interval: all numbers from `lo` to `hi`, in f64.
 ///
@@ -264,9 +262,6 @@ impl Number for Interval {
 
     fn is_definitely_false(self) -> bool {
         self.hi == 0.0
-    }
-    fn run(evaluator: &mut Evaluator<'_, Self>, points: &[[Self; POINT_LANES]]) {
-        evaluator.run(points);
     }
     fn element(self, list: &[f64]) -> Self {
         let last = list.len().saturating_sub(1);
