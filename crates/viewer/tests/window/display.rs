@@ -304,7 +304,7 @@ impl<'a> Window<'a> {
     }
 
     /// Waits until the screen is as expected, and returns it. A cursor may blink in it.
-    pub fn shown(&self, expected: impl Fn(&RgbImage) -> bool) -> Result<RgbImage, Failed> {
+    pub fn seen(&self, expected: impl Fn(&RgbImage) -> bool) -> Result<RgbImage, Failed> {
         self.still_for(Duration::ZERO, expected)
     }
 

@@ -151,7 +151,7 @@ fn example(display: Display) -> Result<(), Failed> {
     let folder = scene.own().join("sdfc/examples");
     expect(folder.join("params.sdf").is_file(), "the example was not copied")?;
     window.input(&["key", "ctrl+e"])?;
-    let dialog = window.shown(|picture| differ(picture, &shown, PICTURE) > 5000)?;
+    let dialog = window.seen(|picture| differ(picture, &shown, PICTURE) > 5000)?;
     window.keep(&dialog, "save")?;
     window.input(&["key", "Return"])?;
     let file = folder.join("params.png");
