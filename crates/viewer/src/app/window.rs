@@ -143,11 +143,11 @@ static FRAMES: AtomicU32 = AtomicU32::new(0);
 
 impl WindowApp {
     /// For tests: loses the device between two frames, or in the middle of one.
-    fn lose_device_if_asked(&self, suffix: &str) {
+    fn lose_device_if_asked(&self, frame: u32, suffix: &str) {
         if cfg!(debug_assertions)
             && let Some(state) = self.events.state()
             && let Some(after) = std::env::var_os(LOSE_WINDOW)
-            && *after == *format!("{}{suffix}", FRAMES.load(Ordering::Relaxed))
+            && *after == *format!("{frame}{suffix}")
         {
             state.device.destroy();
             self.events.poll_device();
@@ -157,7 +157,8 @@ impl WindowApp {
 
 impl eframe::App for WindowApp {
     fn ui(&mut self, ui: &mut Ui, _: &mut eframe::Frame) {
-        self.lose_device_if_asked("");
+        let frame = FRAMES.fetch_add(1, Ordering::Relaxed);
+        self.lose_device_if_asked(frame, "");
         if self.events.device_lost_reported() {
             // Without anything to draw, the lost device is not used until the window is closed.
             return ui.ctx().send_viewport_cmd(ViewportCommand::Close);
@@ -166,8 +167,7 @@ impl eframe::App for WindowApp {
         let messages = self.events.take_messages();
         app.session().messages.extend(messages.into_iter().map(str::to_owned));
         app.show(ui);
-        self.lose_device_if_asked(".5");
-        FRAMES.fetch_add(1, Ordering::Relaxed);
+        self.lose_device_if_asked(frame, ".5");
     }
 
     fn on_exit(&mut self, _: Option<&eframe::glow::Context>) {

@@ -185,6 +185,7 @@ impl<'a> Window<'a> {
     pub fn arrange(&self, title: &str) -> Result<(), Failed> {
         let [width, height] = SIZE.map(|side| side.to_string());
         self.retry(&["search", "--sync", "--name", title, "windowsize", &width, &height])?;
+        // The server refuses to focus a window that is not viewable yet.
         self.retry(&["search", "--name", title, "windowmove", "0", "0", "windowfocus"])
     }
 
