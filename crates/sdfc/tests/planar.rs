@@ -292,11 +292,11 @@ fn many_similar_regions_become_loops() {
 
 #[test]
 fn a_region_is_certified_as_a_solid_is() {
-    let sides = [0.5, 1.0, 2.0].map(|x| [x, 2.0 * x, 0.0]);
-    // The edge is a circle around the origin in both.
+    let points = [0.5, 1.0, 2.0].map(|x| [x, 2.0 * x, 0.0]);
+    // The edge is a circle around the origin.
     let divided = scene("region grown(a: region) = a(1.1 * p) - 0.1\ncircle().grown()");
     assert!(divided.is_certified());
-    for point in sides {
+    for point in points {
         let truth = point[0] * 5.0_f64.sqrt() - 0.6 / 1.1;
         let distance = divided.distance(point).unwrap();
         assert!(distance <= truth * (1.0 + 1e-12), "{distance} at {point:?}, {truth} away");

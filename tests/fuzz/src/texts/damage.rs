@@ -4,8 +4,8 @@ use fastrand::Rng;
 
 use super::mutations::mutated;
 
-/// What is inserted: characters of several bytes, separators that are none, numbers at the ends of
-/// their types.
+/// Texts to insert: characters of several bytes, characters that look like separators but are none,
+/// and numbers at the limits of their types.
 const INSERTED: [&str; 18] = [
     "\u{0}",
     "\u{feff}",
@@ -27,7 +27,7 @@ const INSERTED: [&str; 18] = [
     "0/0",
 ];
 
-/// What is repeated, and how it ends.
+/// Texts to repeat, each with the text that ends it.
 const NESTED: [(&str, &str); 8] = [
     ("(", ")"),
     ("[", "]"),

@@ -39,7 +39,8 @@ struct Node {
 }
 
 /// The cubes around the origin, for one field and the values of one frame. A cell depends on these
-/// and the root alone: not on the camera, nor on the order in which cells are made.
+/// and the root alone: not on the camera, nor on the order in which cells are made, as long as
+/// [`MAX_OPERATIONS`] suffice.
 #[derive(Debug)]
 pub(super) struct Octree {
     cube: Cube,
