@@ -147,8 +147,10 @@ fn fits<T>(count: usize) -> Result<(), Failure> {
     if fits { Ok(()) } else { Err(Failure::argument(format!("{count} elements: too many"))) }
 }
 
-/// Fails if a pointer that a call writes through is null. It may be null if `count` is 0.
+/// Fails if a pointer to `count` elements that a call writes is null. It may be null if `count` is
+/// 0.
 pub(crate) fn writable<T>(to: *mut T, count: usize) -> Result<(), Failure> {
+    fits::<T>(count)?;
     if to.is_null() && count > 0 { Err(Failure::null()) } else { Ok(()) }
 }
 

@@ -45,7 +45,7 @@ pub unsafe extern "C" fn sdfc_gradient(
     guarded(|| {
         // SAFETY: guaranteed by the caller, see the safety section of this function.
         let (scene, points) = unsafe { (handle(scene)?, slice::<[f64; 3]>(points.cast(), count)?) };
-        writable(gradients, count)?;
+        writable(gradients.cast::<[f64; 4]>(), count)?;
         let mut field = scene.scene.field(&scene.frame)?;
         let rows = points.iter().map(|point| {
             let found = field.gradient(*point);
