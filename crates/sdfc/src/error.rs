@@ -4,8 +4,6 @@ use sdfc_graph::ExpandError;
 use sdfc_graph::eval::TapeError;
 use sdfc_render::{RenderError, ViewError};
 
-use crate::shader::MAX_BINDING;
-
 /// Why a compiled scene could not be lowered, evaluated or drawn.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -25,9 +23,14 @@ pub enum Error {
     /// The spacing of isolines is not above 0 and finite.
     #[error("a spacing of isolines of {0}: it must be above 0 and finite")]
     Spacing(f64),
-    /// A bind group or binding is greater than [`MAX_BINDING`].
-    #[error("a group or binding of {0}: it must be at most {MAX_BINDING}")]
-    Binding(u32),
+    /// A bind group or binding is greater than [`MAX_BINDING`](crate::MAX_BINDING).
+    #[error("a group or binding of {number}: it must be at most {limit}")]
+    Binding {
+        /// The group or binding.
+        number: u32,
+        /// The limit.
+        limit: u32,
+    },
     /// A contour of regions in another plane than z = 0.
     #[cfg(feature = "mesh")]
     #[error("the scene draws regions, which lie in the plane z=0: state no other plane")]
@@ -75,7 +78,7 @@ impl Error {
             | Self::Planar(_)
             | Self::NotPlanar
             | Self::Spacing(_)
-            | Self::Binding(_)
+            | Self::Binding { .. }
             | Self::Expand(_)
             | Self::Codegen(_)
             | Self::Evaluate(_)
@@ -96,7 +99,7 @@ impl Error {
                     | RenderError::Samples(_)
                     | RenderError::MethodNotOnCpu(_)
             ),
-            Self::Planar(_) | Self::NotPlanar | Self::Spacing(_) | Self::Binding(_) => true,
+            Self::Planar(_) | Self::NotPlanar | Self::Spacing(_) | Self::Binding { .. } => true,
             Self::NothingDrawn | Self::Expand(_) | Self::Evaluate(_) | Self::View(_) => false,
             #[cfg(feature = "mesh")]
             Self::Mesh(error) => error.is_call(),

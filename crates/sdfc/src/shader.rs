@@ -201,7 +201,7 @@ impl Scene {
         let method = options.method.unwrap_or(self.method());
         let number = group.max(binding);
         if number > MAX_BINDING {
-            return Err(Error::Binding(number));
+            return Err(Error::Binding { number, limit: MAX_BINDING });
         }
         if options.emit == Emit::Render && !target.has_stage(stage) {
             let what = stage.name();
@@ -280,7 +280,7 @@ mod tests {
         write(MAX_BINDING, MAX_BINDING)?;
         for (group, binding) in [(MAX_BINDING + 1, 0), (0, u32::MAX)] {
             let refused = write(group, binding);
-            assert!(matches!(&refused, Err(error @ Error::Binding(_)) if error.is_call()));
+            assert!(matches!(&refused, Err(error @ Error::Binding { .. }) if error.is_call()));
         }
         Ok(())
     }
