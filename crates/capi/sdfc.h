@@ -112,7 +112,8 @@ const char *sdfc_version(void);
 
 /*
  Returns the message of the last error of this thread, or an empty string if the last call
- succeeded. It is valid until the thread's next call.
+ succeeded. It is valid until the thread's next call. Functions that free an object, and
+ `sdfc_version`, do not change it.
  */
 const char *sdfc_error(void);
 
@@ -202,7 +203,7 @@ void sdfc_contour_free(sdfc_contour *contour);
 
 /*
  Computes the signed distances at `count` points, each given as x, y, z. If the scene is
- certified, they never exceed the true distances.
+ certified, they never exceed the true distances. `distances` may be `points`.
 
  # Safety
 
@@ -216,7 +217,7 @@ sdfc_status sdfc_distance(const sdfc_scene *scene,
 
 /*
  Computes the gradient of the distance and the distance at `count` points: x, y, z, distance for
- each.
+ each. `gradients` may be `points`.
 
  # Safety
 
@@ -259,8 +260,8 @@ sdfc_status sdfc_file_give(sdfc_file *file, const void *bytes, size_t length);
 
  `progress` is called with `context`; it may be null.
 
- Returns null if the scene has no limit or no inside, the error is too small, or `progress` stops
- the work. Free the mesh with `sdfc_mesh_free`.
+ Returns null if the scene has no limit or no inside, the error is too small or greater than the
+ scene, or `progress` stops the work. Free the mesh with `sdfc_mesh_free`.
 
  # Safety
 
@@ -454,7 +455,7 @@ void sdfc_picture_free(sdfc_picture *picture);
  Compiles a scene from `length` bytes of UTF-8 source. Messages use `name` as its file name.
 
  If `diagnostics` is not null, a JSON array of all diagnostics is stored there, as `sdfc check
- --json` writes it. Free it with `sdfc_string_free`.
+ --json` writes it, or null if the call fails before it compiles. Free it with `sdfc_string_free`.
 
  Returns null if the source has errors or imports a file. Free the scene with `sdfc_scene_free`.
 
@@ -562,7 +563,8 @@ sdfc_status sdfc_set(sdfc_scene *scene, const char *param, const char *value);
 sdfc_status sdfc_set_number(sdfc_scene *scene, const char *param, double value);
 
 /*
- Sets the values of `time`, in seconds, and `frame`, an integer, in the scene.
+ Sets the values of `time`, in seconds, and `frame`, an integer, in the scene. A time that is not
+ finite, or a frame that is no integer, is an error.
 
  # Safety
 
@@ -575,7 +577,8 @@ sdfc_status sdfc_set_time(sdfc_scene *scene, double time, double frame);
 
  `target` is one of `wgsl`, `glsl`, `glsl-es`, `hlsl`, `msl`, `spirv`, `shadertoy`. `part` is one
  of `field`, `march`, `render`. Names in the shader begin with `prefix`, and the first buffer has
- the index `binding` in `group`. The defaults for null are `wgsl`, `field` and `sdf_`.
+ the index `binding` in `group`; both are at most 65535. The defaults for null are `wgsl`,
+ `field` and `sdf_`.
 
  Returns null if the shader cannot be written. Free the shader with `sdfc_shader_free`.
 

@@ -29,7 +29,8 @@ def library() -> Path:
 
 
 def stripped(binary: Path, folder: str) -> Path:
-    """Returns the library without the names of its functions, a fifth of it, where that is safe."""
+    """Returns a copy of the library without symbols, which take a fifth of it; on other systems
+    than Linux, the library itself."""
     if not sys.platform.startswith("linux") or shutil.which("strip") is None:
         return binary
     small = Path(folder) / binary.name
@@ -40,8 +41,11 @@ def stripped(binary: Path, folder: str) -> Path:
 def platform(binary: Path) -> str:
     """Returns the platform tag of a wheel with this library.
 
-    On Linux it names the oldest glibc that has all symbols of the library (PEP 600).
+    On Linux it names the oldest glibc that has all symbols of the library (PEP 600). On macOS it
+    names the one architecture of the library, while Python itself may have two.
     """
+    if sys.platform == "darwin":
+        return f"macosx_11_0_{os.uname().machine}"
     tag = sysconfig.get_platform().replace("-", "_").replace(".", "_")
     versions = re.findall(rb"GLIBC_2\.(\d+)", binary.read_bytes())
     if not sys.platform.startswith("linux") or not versions:
@@ -50,7 +54,7 @@ def platform(binary: Path) -> str:
 
 
 class Hook(BuildHookInterface):
-    """The wheel has no code for one version of Python, but a library for one platform."""
+    """Builds one wheel per platform, for all versions of Python 3."""
 
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:
         self.folder = tempfile.TemporaryDirectory()

@@ -5,6 +5,8 @@ use std::ffi::{CStr, CString, c_char};
 use std::fmt::Display;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
+use serde::Serialize;
+
 use crate::status::Status;
 
 /// The reason why a call failed.
@@ -41,20 +43,13 @@ impl From<sdfc::Error> for Failure {
             Status::Stopped
         } else if error.is_machine() {
             Status::Machine
-        } else if error.is_call() || is_option(&error) {
+        } else if error.is_call() {
             Status::Argument
         } else {
             Status::Scene
         };
         Self { status, message: error.to_string() }
     }
-}
-
-/// True if an option of a picture is the cause. The façade does not count these as errors of the
-/// call, because `sdfc render` checks them before.
-fn is_option(error: &sdfc::Error) -> bool {
-    use sdfc::{Error, RenderError};
-    matches!(error, Error::Render(RenderError::Region { .. } | RenderError::Samples(_)))
 }
 
 /// True if the progress callback stopped the work.
@@ -118,7 +113,7 @@ pub(crate) unsafe fn handle<'a, T>(pointer: *const T) -> Result<&'a T, Failure> 
     unsafe { pointer.as_ref() }.ok_or_else(Failure::null)
 }
 
-/// Converts a pointer to a mutable reference, or fails if it is null.
+/// Converts a pointer to an object of this library to a mutable reference, or fails if it is null.
 ///
 /// # Safety
 ///
@@ -145,22 +140,6 @@ pub(crate) unsafe fn slice<'a, T>(first: *const T, count: usize) -> Result<&'a [
     }
 }
 
-/// Converts a pointer and a count to a mutable slice. The pointer may be null if the count is 0.
-///
-/// # Safety
-///
-/// The pointer is null, or valid for writes of `count` elements, and nobody else uses them while
-/// the slice lives.
-pub(crate) unsafe fn slice_mut<'a, T>(first: *mut T, count: usize) -> Result<&'a mut [T], Failure> {
-    fits::<T>(count)?;
-    match (first.is_null(), count) {
-        (_, 0) => Ok(&mut []),
-        (true, _) => Err(Failure::null()),
-        // SAFETY: guaranteed by the caller, see the safety section of this function.
-        (false, _) => Ok(unsafe { std::slice::from_raw_parts_mut(first, count) }),
-    }
-}
-
 /// Fails if `count` elements are larger than anything in memory can be.
 fn fits<T>(count: usize) -> Result<(), Failure> {
     let bytes = count.checked_mul(size_of::<T>());
@@ -168,14 +147,69 @@ fn fits<T>(count: usize) -> Result<(), Failure> {
     if fits { Ok(()) } else { Err(Failure::argument(format!("{count} elements: too many"))) }
 }
 
-/// Copies bytes to the start of a buffer, or fails if the buffer is too small.
-pub(crate) fn fill(buffer: &mut [u8], bytes: &[u8]) -> Result<(), Failure> {
-    let short = || Failure::argument(format!("the buffer is too small for {} bytes", bytes.len()));
-    buffer.get_mut(..bytes.len()).ok_or_else(short)?.copy_from_slice(bytes);
+/// Fails if a pointer to `count` elements that a call writes is null. It may be null if `count` is
+/// 0.
+pub(crate) fn writable<T>(to: *mut T, count: usize) -> Result<(), Failure> {
+    fits::<T>(count)?;
+    if to.is_null() && count > 0 { Err(Failure::null()) } else { Ok(()) }
+}
+
+/// Copies values to memory of the caller, which may be uninitialised, or fails if it is null.
+///
+/// # Safety
+///
+/// The pointer is null, or valid for writes of as many elements as there are values.
+pub(crate) unsafe fn store<T: Copy>(to: *mut T, values: &[T]) -> Result<(), Failure> {
+    writable(to, values.len())?;
+    if !values.is_empty() {
+        // SAFETY: the pointer is not null; the rest is guaranteed by the caller.
+        unsafe { std::ptr::copy(values.as_ptr(), to, values.len()) };
+    }
     Ok(())
 }
 
-/// Converts JSON to a C string. JSON escapes null bytes, so it has none.
-pub(crate) fn c_string(text: String) -> Result<CString, Failure> {
+/// Returns a pointer into an object, or null if the object is null.
+///
+/// # Safety
+///
+/// The object is null, or valid for reads, and nobody changes it during the call.
+pub(crate) unsafe fn pointer_into<T, P>(
+    object: *const T,
+    get: impl FnOnce(&T) -> *const P,
+) -> *const P {
+    let mut found = std::ptr::null();
+    guarded(|| {
+        // SAFETY: guaranteed by the caller, see the safety section of this function.
+        found = get(unsafe { handle(object)? });
+        Ok(())
+    });
+    found
+}
+
+/// Runs a call and returns its result, which [`free`] frees, or null if the call failed.
+pub(crate) fn boxed<T>(call: impl FnOnce() -> Result<T, Failure>) -> *mut T {
+    let mut made = std::ptr::null_mut();
+    guarded(|| {
+        made = Box::into_raw(Box::new(call()?));
+        Ok(())
+    });
+    made
+}
+
+/// Frees a result of [`boxed`]. Does nothing for null.
+///
+/// # Safety
+///
+/// The object is null, or was returned by [`boxed`] and is not used again.
+pub(crate) unsafe fn free<T>(object: *mut T) {
+    if !object.is_null() {
+        // SAFETY: the pointer came from a `Box`, and the caller does not use it again.
+        drop(unsafe { Box::from_raw(object) });
+    }
+}
+
+/// Returns a value as JSON. JSON escapes null bytes, so the string has none.
+pub(crate) fn json(value: &impl Serialize) -> Result<CString, Failure> {
+    let text = serde_json::to_string(value).map_err(Failure::internal)?;
     CString::new(text).map_err(Failure::internal)
 }

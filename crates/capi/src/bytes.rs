@@ -1,6 +1,6 @@
 //! Results that are files.
 
-use crate::boundary::{guarded, handle, handle_mut};
+use crate::boundary::{free, guarded, handle, store};
 
 /// The content of a file.
 #[derive(Debug)]
@@ -17,8 +17,11 @@ pub unsafe extern "C" fn sdfc_bytes_data(bytes: *const Bytes, length: *mut usize
     let mut data = std::ptr::null();
     guarded(|| {
         // SAFETY: guaranteed by the caller, see the safety section of this function.
-        let (Bytes(bytes), length) = unsafe { (handle(bytes)?, handle_mut(length)?) };
-        (data, *length) = (bytes.as_ptr(), bytes.len());
+        unsafe {
+            let Bytes(bytes) = handle(bytes)?;
+            store(length, &[bytes.len()])?;
+            data = bytes.as_ptr();
+        }
         Ok(())
     });
     data
@@ -31,8 +34,6 @@ pub unsafe extern "C" fn sdfc_bytes_data(bytes: *const Bytes, length: *mut usize
 /// The bytes were returned by a function whose documentation says so, and are not used again.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdfc_bytes_free(bytes: *mut Bytes) {
-    if !bytes.is_null() {
-        // SAFETY: the pointer came from a `Box`, and the caller does not use it again.
-        drop(unsafe { Box::from_raw(bytes) });
-    }
+    // SAFETY: guaranteed by the caller, see the safety section of this function.
+    unsafe { free(bytes) }
 }

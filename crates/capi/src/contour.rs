@@ -6,7 +6,7 @@ use std::path::Path;
 use sdfc::{ContourFormat, Plane};
 use serde::Deserialize;
 
-use crate::boundary::{Failure, c_string, guarded, handle, text};
+use crate::boundary::{Failure, boxed, free, handle, json, pointer_into, text};
 use crate::bytes::Bytes;
 use crate::mesh::mesh_options;
 use crate::options::options;
@@ -51,8 +51,7 @@ pub unsafe extern "C" fn sdfc_contour_make(
     progress: Progress,
     context: *mut c_void,
 ) -> *mut Contour {
-    let mut made = std::ptr::null_mut();
-    guarded(|| {
+    boxed(|| {
         // SAFETY: guaranteed by the caller, see the safety section of this function.
         let (scene, keys, reporter) = unsafe {
             let keys = self::options::<ContourKeys>(options)?;
@@ -67,32 +66,9 @@ pub unsafe extern "C" fn sdfc_contour_make(
         let plane = Plane::new(normal, offset).ok_or_else(no_plane)?;
         let options = mesh_options(scene, error, error_relative, max_cells)?;
         let mut report = |at: sdfc::MeshProgress| reporter.report(at.done, at.total);
-        let contour = scene.scene.contour(plane, &options, &mut report);
-        let contour = contour.map_err(|error| match error {
-            // Its message names an argument of the command line.
-            sdfc::Error::PlaneOfRegions => Failure::argument(
-                "the scene draws regions, which lie in the plane z=0: leave `normal` and `offset` \
-                 out",
-            ),
-            error @ (sdfc::Error::Mesh(_) | _) => error.into(),
-        })?;
-        let described = c_string(describe(&contour, &plane).to_string())?;
-        made = Box::into_raw(Box::new(Contour { contour, described }));
-        Ok(())
-    });
-    made
-}
-
-/// Returns what `sdfc contour --json` writes.
-fn describe(contour: &sdfc::Contour, plane: &Plane) -> serde_json::Value {
-    serde_json::json!({
-        "origin": plane.at([0.0; 2]),
-        "axes": plane.axes(),
-        "area": contour.area(),
-        "length": contour.length(),
-        "bounds": contour.bounds(),
-        "paths": contour.paths,
-        "certificate": contour.certificate,
+        let contour = scene.scene.contour(plane, &options, &mut report)?;
+        let described = json(&contour.report(&plane))?;
+        Ok(Contour { contour, described })
     })
 }
 
@@ -105,13 +81,8 @@ fn describe(contour: &sdfc::Contour, plane: &Plane) -> serde_json::Value {
 /// `contour` is null or a valid contour, and is not freed while the string is used.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdfc_contour_describe(contour: *const Contour) -> *const c_char {
-    let mut described = std::ptr::null();
-    guarded(|| {
-        // SAFETY: guaranteed by the caller, see the safety section of this function.
-        described = unsafe { handle(contour)? }.described.as_ptr();
-        Ok(())
-    });
-    described
+    // SAFETY: guaranteed by the caller, see the safety section of this function.
+    unsafe { pointer_into(contour, |contour| contour.described.as_ptr()) }
 }
 
 /// Writes the contour as a file: `svg` or `dxf`.
@@ -126,16 +97,13 @@ pub unsafe extern "C" fn sdfc_contour_write(
     contour: *const Contour,
     format: *const c_char,
 ) -> *mut Bytes {
-    let mut made = std::ptr::null_mut();
-    guarded(|| {
+    boxed(|| {
         // SAFETY: guaranteed by the caller, see the safety section of this function.
         let (contour, format) = unsafe { (handle(contour)?, text(format)?) };
         let format = ContourFormat::of(Path::new(&format!("contour.{format}")));
         let bytes = format.map_err(Failure::argument)?.encode(&contour.contour);
-        made = Box::into_raw(Box::new(Bytes(bytes)));
-        Ok(())
-    });
-    made
+        Ok(Bytes(bytes))
+    })
 }
 
 /// Frees a contour. Does nothing for null.
@@ -145,8 +113,6 @@ pub unsafe extern "C" fn sdfc_contour_write(
 /// The contour was returned by `sdfc_contour_make` and is not used again.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdfc_contour_free(contour: *mut Contour) {
-    if !contour.is_null() {
-        // SAFETY: the pointer came from a `Box`, and the caller does not use it again.
-        drop(unsafe { Box::from_raw(contour) });
-    }
+    // SAFETY: guaranteed by the caller, see the safety section of this function.
+    unsafe { free(contour) }
 }

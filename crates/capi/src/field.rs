@@ -1,11 +1,11 @@
 //! The field of a scene at points.
 
-use crate::boundary::{Failure, guarded, handle, slice, slice_mut};
+use crate::boundary::{Failure, guarded, handle, slice, store, writable};
 use crate::scene::Scene;
 use crate::status::Status;
 
 /// Computes the signed distances at `count` points, each given as x, y, z. If the scene is
-/// certified, they never exceed the true distances.
+/// certified, they never exceed the true distances. `distances` may be `points`.
 ///
 /// # Safety
 ///
@@ -20,16 +20,16 @@ pub unsafe extern "C" fn sdfc_distance(
 ) -> Status {
     guarded(|| {
         // SAFETY: guaranteed by the caller, see the safety section of this function.
-        let (scene, points, to) =
-            unsafe { (handle(scene)?, slice(points.cast(), count)?, slice_mut(distances, count)?) };
-        let mut field = scene.scene.field(&scene.frame)?;
-        to.copy_from_slice(&field.distances(points));
-        Ok(())
+        let (scene, points) = unsafe { (handle(scene)?, slice(points.cast(), count)?) };
+        writable(distances, count)?;
+        let found = scene.scene.field(&scene.frame)?.distances(points);
+        // SAFETY: guaranteed by the caller, see the safety section of this function.
+        unsafe { store(distances, &found) }
     })
 }
 
 /// Computes the gradient of the distance and the distance at `count` points: x, y, z, distance for
-/// each.
+/// each. `gradients` may be `points`.
 ///
 /// # Safety
 ///
@@ -44,16 +44,18 @@ pub unsafe extern "C" fn sdfc_gradient(
 ) -> Status {
     guarded(|| {
         // SAFETY: guaranteed by the caller, see the safety section of this function.
-        let (scene, points, to) = unsafe {
-            (handle(scene)?, slice(points.cast(), count)?, slice_mut(gradients.cast(), count)?)
-        };
+        let (scene, points) = unsafe { (handle(scene)?, slice::<[f64; 3]>(points.cast(), count)?) };
+        writable(gradients.cast::<[f64; 4]>(), count)?;
         let mut field = scene.scene.field(&scene.frame)?;
-        for (to, point) in to.iter_mut().zip(points) {
+        let rows = points.iter().map(|point| {
             let found = field.gradient(*point);
             let [x, y, z] = found.gradient;
-            *to = [x, y, z, found.distance];
-        }
-        Ok(())
+            [x, y, z, found.distance]
+        });
+        // All of them before the first is stored, because `gradients` may overlap `points`.
+        let rows: Vec<[f64; 4]> = rows.collect();
+        // SAFETY: guaranteed by the caller, see the safety section of this function.
+        unsafe { store(gradients, rows.as_flattened()) }
     })
 }
 
@@ -71,12 +73,15 @@ pub unsafe extern "C" fn sdfc_bounds(
 ) -> Status {
     guarded(|| {
         // SAFETY: guaranteed by the caller, see the safety section of this function.
-        let (scene, lowest, highest) =
-            unsafe { (handle(scene)?, slice_mut(lowest, 3)?, slice_mut(highest, 3)?) };
+        let scene = unsafe { handle(scene)? };
+        writable(lowest, 3)?;
+        writable(highest, 3)?;
         let bounds = scene.scene.bounds_at(&scene.frame);
         let [lo, hi] = bounds.ok_or_else(|| Failure::from(sdfc::Error::NothingDrawn))?;
-        lowest.copy_from_slice(&lo);
-        highest.copy_from_slice(&hi);
-        Ok(())
+        // SAFETY: guaranteed by the caller, see the safety section of this function.
+        unsafe {
+            store(lowest, &lo)?;
+            store(highest, &hi)
+        }
     })
 }

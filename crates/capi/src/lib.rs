@@ -70,7 +70,8 @@ pub extern "C" fn sdfc_version() -> *const c_char {
 }
 
 /// Returns the message of the last error of this thread, or an empty string if the last call
-/// succeeded. It is valid until the thread's next call.
+/// succeeded. It is valid until the thread's next call. Functions that free an object, and
+/// `sdfc_version`, do not change it.
 #[unsafe(no_mangle)]
 pub extern "C" fn sdfc_error() -> *const c_char {
     boundary::last_error()

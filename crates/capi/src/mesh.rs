@@ -6,7 +6,7 @@ use std::path::Path;
 use sdfc::{MeasureOptions, MeshFormat, MeshOptions, MeshSize};
 use serde::Deserialize;
 
-use crate::boundary::{Failure, c_string, guarded, handle, handle_mut, text};
+use crate::boundary::{Failure, boxed, free, guarded, handle, json, pointer_into, store, text};
 use crate::bytes::Bytes;
 use crate::options::options;
 use crate::progress::{Progress, Reporter};
@@ -19,7 +19,7 @@ pub struct Mesh {
     described: CString,
 }
 
-/// The options of a mesh and a contour.
+/// The options of a mesh.
 #[derive(Debug, Default, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 struct MeshKeys {
@@ -50,7 +50,7 @@ pub(crate) fn mesh_options(
             return Err(Failure::argument(message));
         }
         (Some(length), None) => options.error(MeshSize::Length(length)),
-        (None, Some(part)) => options.error(MeshSize::Relative(part)),
+        (None, Some(fraction)) => options.error(MeshSize::Relative(fraction)),
         (None, None) => options,
     };
     Ok(match max_cells {
@@ -68,8 +68,8 @@ pub(crate) fn mesh_options(
 ///
 /// `progress` is called with `context`; it may be null.
 ///
-/// Returns null if the scene has no limit or no inside, the error is too small, or `progress` stops
-/// the work. Free the mesh with `sdfc_mesh_free`.
+/// Returns null if the scene has no limit or no inside, the error is too small or greater than the
+/// scene, or `progress` stops the work. Free the mesh with `sdfc_mesh_free`.
 ///
 /// # Safety
 ///
@@ -82,8 +82,7 @@ pub unsafe extern "C" fn sdfc_mesh_make(
     progress: Progress,
     context: *mut c_void,
 ) -> *mut Mesh {
-    let mut made = std::ptr::null_mut();
-    guarded(|| {
+    boxed(|| {
         // SAFETY: guaranteed by the caller, see the safety section of this function.
         let (scene, keys, reporter) = unsafe {
             (handle(scene)?, self::options::<MeshKeys>(options)?, Reporter::new(progress, context))
@@ -92,23 +91,8 @@ pub unsafe extern "C" fn sdfc_mesh_make(
         let options = mesh_options(scene, error, error_relative, max_cells)?;
         let mut report = |at: sdfc::MeshProgress| reporter.report(at.done, at.total);
         let mesh = scene.scene.mesh(&options, &mut report)?;
-        let described = c_string(describe(&mesh).to_string())?;
-        made = Box::into_raw(Box::new(Mesh { mesh, described }));
-        Ok(())
-    });
-    made
-}
-
-/// Returns what `sdfc mesh --json` writes.
-fn describe(mesh: &sdfc::Mesh) -> serde_json::Value {
-    serde_json::json!({
-        "vertices": mesh.vertices.len(),
-        "triangles": mesh.triangles.len(),
-        "open_edges": mesh.open_edges(),
-        "volume": mesh.volume(),
-        "area": mesh.area(),
-        "bounds": mesh.bounds(),
-        "certificate": mesh.certificate,
+        let described = json(&mesh.report())?;
+        Ok(Mesh { mesh, described })
     })
 }
 
@@ -174,9 +158,11 @@ unsafe fn rows<T>(
     let mut first = std::ptr::null();
     guarded(|| {
         // SAFETY: guaranteed by the caller, see the safety section of this function.
-        let (mesh, count) = unsafe { (handle(mesh)?, handle_mut(count)?) };
-        let rows = of(&mesh.mesh);
-        (first, *count) = (rows.as_ptr().cast(), rows.len());
+        unsafe {
+            let rows = of(&handle(mesh)?.mesh);
+            store(count, &[rows.len()])?;
+            first = rows.as_ptr().cast();
+        }
         Ok(())
     });
     first
@@ -191,13 +177,8 @@ unsafe fn rows<T>(
 /// `mesh` is null or a valid mesh, and is not freed while the string is used.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdfc_mesh_describe(mesh: *const Mesh) -> *const c_char {
-    let mut described = std::ptr::null();
-    guarded(|| {
-        // SAFETY: guaranteed by the caller, see the safety section of this function.
-        described = unsafe { handle(mesh)? }.described.as_ptr();
-        Ok(())
-    });
-    described
+    // SAFETY: guaranteed by the caller, see the safety section of this function.
+    unsafe { pointer_into(mesh, |mesh| mesh.described.as_ptr()) }
 }
 
 /// Writes the mesh as a file: `stl`, `obj`, `ply`, `glb` or `3mf`.
@@ -210,17 +191,14 @@ pub unsafe extern "C" fn sdfc_mesh_describe(mesh: *const Mesh) -> *const c_char 
 /// `mesh` is null or a valid mesh. `format` ends in a null byte.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdfc_mesh_write(mesh: *const Mesh, format: *const c_char) -> *mut Bytes {
-    let mut made = std::ptr::null_mut();
-    guarded(|| {
+    boxed(|| {
         // SAFETY: guaranteed by the caller, see the safety section of this function.
         let (mesh, format) = unsafe { (handle(mesh)?, text(format)?) };
         let format = MeshFormat::of(Path::new(&format!("mesh.{format}")));
         let format = format.map_err(Failure::argument)?;
         let bytes = format.encode(&mesh.mesh).map_err(Failure::argument)?;
-        made = Box::into_raw(Box::new(Bytes(bytes)));
-        Ok(())
-    });
-    made
+        Ok(Bytes(bytes))
+    })
 }
 
 /// Frees a mesh. Does nothing for null.
@@ -230,10 +208,8 @@ pub unsafe extern "C" fn sdfc_mesh_write(mesh: *const Mesh, format: *const c_cha
 /// The mesh was returned by `sdfc_mesh_make` and is not used again.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdfc_mesh_free(mesh: *mut Mesh) {
-    if !mesh.is_null() {
-        // SAFETY: the pointer came from a `Box`, and the caller does not use it again.
-        drop(unsafe { Box::from_raw(mesh) });
-    }
+    // SAFETY: guaranteed by the caller, see the safety section of this function.
+    unsafe { free(mesh) }
 }
 
 /// Measures the scene, on all cores of the machine: volume, center of mass, inertia and extent as
@@ -268,9 +244,7 @@ pub unsafe extern "C" fn sdfc_measure(
         let max_cells = keys.max_cells.unwrap_or(options.max_cells);
         let options = options.relative(relative).max_cells(max_cells);
         let mut report = |at: sdfc::MeshProgress| reporter.report(at.done, at.total);
-        let found = scene.scene.measure(&options, &mut report)?;
-        let found = serde_json::to_string(&found).map_err(Failure::internal)?;
-        made = c_string(found)?.into_raw();
+        made = json(&scene.scene.measure(&options, &mut report)?)?.into_raw();
         Ok(())
     });
     made

@@ -5,7 +5,7 @@ use std::ffi::{CString, c_char, c_void};
 use sdfc::{Backend, Method, PictureOptions, Pose, Tile};
 use serde::Deserialize;
 
-use crate::boundary::{Failure, c_string, guarded, handle, handle_mut};
+use crate::boundary::{Failure, boxed, free, guarded, handle, json, pointer_into, store, writable};
 use crate::bytes::Bytes;
 use crate::options::options;
 use crate::progress::{Progress, Reporter};
@@ -56,34 +56,22 @@ struct Camera {
     height: Option<f64>,
 }
 
-/// The field of view of a camera that states none.
-const FOV: f64 = 40.0 * std::f64::consts::PI / 180.0;
-
 fn upwards() -> [f64; 3] {
     [0.0, 1.0, 0.0]
 }
 
 impl Camera {
     fn pose(&self) -> Result<Pose, Failure> {
-        let (parallel, half_height) = match (self.fov, self.height) {
+        let Self { eye, target, up, fov, height } = *self;
+        let pose = match (fov, height) {
             (Some(_), Some(_)) => {
                 let message = "the camera states `fov` and `height`: state one of them";
                 return Err(Failure::argument(message));
             }
-            (None, Some(height)) => (true, height / 2.0),
-            (fov, None) => (false, (fov.unwrap_or(FOV) / 2.0).tan()),
+            (None, Some(height)) => Pose::with_height(eye, target, up, height),
+            (fov, None) => Pose::with_fov(eye, target, up, fov.unwrap_or(Pose::FITTED_FOV)),
         };
-        // A field of view of half a turn or more has a tangent that is infinite or below 0.
-        if !(half_height > 0.0 && half_height < 1e6) {
-            let message = "the camera's `fov` must be above 0 and below pi, and `height` above 0";
-            return Err(Failure::argument(message));
-        }
-        if self.eye == self.target {
-            let message = format!("the camera's eye is its target: {:?}", self.eye);
-            return Err(Failure::argument(message));
-        }
-        let (eye, target, up) = (self.eye.into(), self.target.into(), self.up.into());
-        Ok(Pose { eye, target, up, parallel, half_height })
+        pose.map_err(Failure::argument)
     }
 }
 
@@ -136,8 +124,7 @@ pub unsafe extern "C" fn sdfc_render(
     progress: Progress,
     context: *mut c_void,
 ) -> *mut Picture {
-    let mut made = std::ptr::null_mut();
-    guarded(|| {
+    boxed(|| {
         // SAFETY: guaranteed by the caller, see the safety section of this function.
         let (scene, keys, reporter) = unsafe {
             let keys = self::options::<PictureKeys>(options)?;
@@ -146,16 +133,14 @@ pub unsafe extern "C" fn sdfc_render(
         let options = keys.options()?.frame(scene.frame.clone());
         let mut report = |at: sdfc::Progress| reporter.report(at.done, at.total);
         let picture = scene.scene.render(&options, &mut report)?;
-        made = Box::into_raw(Box::new(finished(picture)?));
-        Ok(())
-    });
-    made
+        finished(picture)
+    })
 }
 
 fn finished(picture: sdfc::Picture) -> Result<Picture, Failure> {
     let sdfc::Picture { image, stats, note, unproven, .. } = picture;
     let described = serde_json::json!({ "note": note, "unproven": unproven, "stats": stats });
-    let described = c_string(described.to_string())?;
+    let described = json(&described)?;
     let colors = image.to_srgb8();
     let rgba = colors
         .as_chunks::<3>()
@@ -182,10 +167,13 @@ pub unsafe extern "C" fn sdfc_picture_size(
 ) -> Status {
     guarded(|| {
         // SAFETY: guaranteed by the caller, see the safety section of this function.
-        let (picture, width, height) =
-            unsafe { (handle(picture)?, handle_mut(width)?, handle_mut(height)?) };
-        [*width, *height] = picture.image.size();
-        Ok(())
+        let [columns, rows] = unsafe { handle(picture)? }.image.size();
+        writable(height, 1)?;
+        // SAFETY: guaranteed by the caller, see the safety section of this function.
+        unsafe {
+            store(width, &[columns])?;
+            store(height, &[rows])
+        }
     })
 }
 
@@ -197,13 +185,8 @@ pub unsafe extern "C" fn sdfc_picture_size(
 /// `picture` is null or a valid picture, and is not freed while the bytes are used.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdfc_picture_rgba(picture: *const Picture) -> *const u8 {
-    let mut first = std::ptr::null();
-    guarded(|| {
-        // SAFETY: guaranteed by the caller, see the safety section of this function.
-        first = unsafe { handle(picture)? }.rgba.as_ptr();
-        Ok(())
-    });
-    first
+    // SAFETY: guaranteed by the caller, see the safety section of this function.
+    unsafe { pointer_into(picture, |picture| picture.rgba.as_ptr()) }
 }
 
 /// Returns the distance from the eye to the surface along the ray of each pixel, row by row from
@@ -214,13 +197,8 @@ pub unsafe extern "C" fn sdfc_picture_rgba(picture: *const Picture) -> *const u8
 /// `picture` is null or a valid picture, and is not freed while the numbers are used.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdfc_picture_depths(picture: *const Picture) -> *const f32 {
-    let mut first = std::ptr::null();
-    guarded(|| {
-        // SAFETY: guaranteed by the caller, see the safety section of this function.
-        first = unsafe { handle(picture)? }.depths.as_ptr();
-        Ok(())
-    });
-    first
+    // SAFETY: guaranteed by the caller, see the safety section of this function.
+    unsafe { pointer_into(picture, |picture| picture.depths.as_ptr()) }
 }
 
 /// Returns what is known about the picture as JSON. `note` says why device or method differ from
@@ -232,13 +210,8 @@ pub unsafe extern "C" fn sdfc_picture_depths(picture: *const Picture) -> *const 
 /// `picture` is null or a valid picture, and is not freed while the string is used.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdfc_picture_describe(picture: *const Picture) -> *const c_char {
-    let mut described = std::ptr::null();
-    guarded(|| {
-        // SAFETY: guaranteed by the caller, see the safety section of this function.
-        described = unsafe { handle(picture)? }.described.as_ptr();
-        Ok(())
-    });
-    described
+    // SAFETY: guaranteed by the caller, see the safety section of this function.
+    unsafe { pointer_into(picture, |picture| picture.described.as_ptr()) }
 }
 
 /// Writes the picture as a PNG file. Returns null for null. Free the result with `sdfc_bytes_free`.
@@ -248,14 +221,11 @@ pub unsafe extern "C" fn sdfc_picture_describe(picture: *const Picture) -> *cons
 /// `picture` is null or a valid picture.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdfc_picture_png(picture: *const Picture) -> *mut Bytes {
-    let mut made = std::ptr::null_mut();
-    guarded(|| {
+    boxed(|| {
         // SAFETY: guaranteed by the caller, see the safety section of this function.
         let bytes = unsafe { handle(picture)? }.image.to_png().map_err(sdfc::Error::from)?;
-        made = Box::into_raw(Box::new(Bytes(bytes)));
-        Ok(())
-    });
-    made
+        Ok(Bytes(bytes))
+    })
 }
 
 /// Frees a picture. Does nothing for null.
@@ -265,8 +235,6 @@ pub unsafe extern "C" fn sdfc_picture_png(picture: *const Picture) -> *mut Bytes
 /// The picture was returned by `sdfc_render` and is not used again.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdfc_picture_free(picture: *mut Picture) {
-    if !picture.is_null() {
-        // SAFETY: the pointer came from a `Box`, and the caller does not use it again.
-        drop(unsafe { Box::from_raw(picture) });
-    }
+    // SAFETY: guaranteed by the caller, see the safety section of this function.
+    unsafe { free(picture) }
 }

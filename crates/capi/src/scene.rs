@@ -6,7 +6,9 @@ use std::sync::Arc;
 
 use sdfc::{CompileWithError, Compiler, FrameValues, Param, ParamKind};
 
-use crate::boundary::{Failure, c_string, guarded, handle, handle_mut, slice, text};
+use crate::boundary::{
+    Failure, boxed, free, guarded, handle, handle_mut, json, slice, store, text,
+};
 use crate::files::{CallbackResolver, Read};
 use crate::options::options;
 use crate::status::Status;
@@ -24,7 +26,7 @@ pub struct Scene {
 /// Compiles a scene from `length` bytes of UTF-8 source. Messages use `name` as its file name.
 ///
 /// If `diagnostics` is not null, a JSON array of all diagnostics is stored there, as `sdfc check
-/// --json` writes it. Free it with `sdfc_string_free`.
+/// --json` writes it, or null if the call fails before it compiles. Free it with `sdfc_string_free`.
 ///
 /// Returns null if the source has errors or imports a file. Free the scene with `sdfc_scene_free`.
 ///
@@ -86,8 +88,11 @@ pub unsafe extern "C" fn sdfc_compile_with_values(
     context: *mut c_void,
     diagnostics: *mut *mut c_char,
 ) -> *mut Scene {
-    let mut made = std::ptr::null_mut();
-    guarded(|| {
+    boxed(|| {
+        if !diagnostics.is_null() {
+            // SAFETY: the pointer is not null, and the caller guarantees that it may be written.
+            unsafe { store(diagnostics, &[std::ptr::null_mut()])? };
+        }
         // SAFETY: guaranteed by the caller, see the safety section of this function.
         let (name, source) = unsafe { (text(name)?, slice(source.cast::<u8>(), length)?) };
         let source = std::str::from_utf8(source).map_err(|_| Failure::not_utf8("source"))?;
@@ -97,26 +102,26 @@ pub unsafe extern "C" fn sdfc_compile_with_values(
             (CallbackResolver::new(read, context), values)
         };
         let values: Vec<_> = values.iter().map(|(name, value)| (&**name, &**value)).collect();
-        let compiled = Compiler::new().resolver(&files).compile_with(name, source, &values);
+        // As the command line: a scene that states a wrong clause has errors.
+        let compiler = Compiler::new().verify(true).resolver(&files);
+        let compiled = compiler.compile_with(name, source, &values);
         if !diagnostics.is_null() {
             let rows = match &compiled {
                 Ok(scene) => scene.diagnostics().rows(),
                 Err(CompileWithError::Scene(errors)) => errors.rows(),
                 Err(_) => Vec::new(),
             };
-            let rows = c_string(serde_json::to_string(&rows).map_err(Failure::internal)?)?;
+            let rows = json(&rows)?;
             // SAFETY: the pointer is not null, and the caller guarantees that it may be written.
-            unsafe { *diagnostics = rows.into_raw() };
+            unsafe { store(diagnostics, &[rows.into_raw()])? };
         }
         let scene = compiled.map_err(|error| match error {
             CompileWithError::Param(error) => Failure::argument(error),
             error @ (CompileWithError::Scene(_) | _) => Failure::scene(error),
         })?;
         let (frame, scene) = (scene.defaults(), Arc::new(scene));
-        made = Box::into_raw(Box::new(Scene { scene, frame }));
-        Ok(())
-    });
-    made
+        Ok(Scene { scene, frame })
+    })
 }
 
 /// Returns a copy of a scene, with values of its own for params, time and frame. Both share what is
@@ -127,15 +132,12 @@ pub unsafe extern "C" fn sdfc_compile_with_values(
 /// `scene` is null or a valid scene.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdfc_scene_copy(scene: *const Scene) -> *mut Scene {
-    let mut made = std::ptr::null_mut();
-    guarded(|| {
+    boxed(|| {
         // SAFETY: guaranteed by the caller, see the safety section of this function.
         let Scene { scene, frame } = unsafe { handle(scene)? };
         let (scene, frame) = (Arc::clone(scene), frame.clone());
-        made = Box::into_raw(Box::new(Scene { scene, frame }));
-        Ok(())
-    });
-    made
+        Ok(Scene { scene, frame })
+    })
 }
 
 /// Returns what is known about a scene as JSON:
@@ -164,7 +166,7 @@ pub unsafe extern "C" fn sdfc_scene_describe(scene: *const Scene) -> *mut c_char
             "certified": scene.is_certified(),
             "planar": scene.is_planar(),
         });
-        made = c_string(described.to_string())?.into_raw();
+        made = json(&described)?.into_raw();
         Ok(())
     });
     made
@@ -199,10 +201,8 @@ fn described(param: &Param, value: &[f64; 4]) -> serde_json::Value {
 /// The scene was returned by a function whose documentation says so, and is not used again.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdfc_scene_free(scene: *mut Scene) {
-    if !scene.is_null() {
-        // SAFETY: the pointer came from a `Box`, and the caller does not use it again.
-        drop(unsafe { Box::from_raw(scene) });
-    }
+    // SAFETY: guaranteed by the caller, see the safety section of this function.
+    unsafe { free(scene) }
 }
 
 /// Sets the param with a name. The value is written as in a scene: `0.5`, `90deg`, `true`,
@@ -245,7 +245,8 @@ pub unsafe extern "C" fn sdfc_set_number(
     })
 }
 
-/// Sets the values of `time`, in seconds, and `frame`, an integer, in the scene.
+/// Sets the values of `time`, in seconds, and `frame`, an integer, in the scene. A time that is not
+/// finite, or a frame that is no integer, is an error.
 ///
 /// # Safety
 ///
@@ -255,6 +256,9 @@ pub unsafe extern "C" fn sdfc_set_time(scene: *mut Scene, time: f64, frame: f64)
     guarded(|| {
         // SAFETY: guaranteed by the caller, see the safety section of this function.
         let scene = unsafe { handle_mut(scene)? };
+        if !(time.is_finite() && frame.is_finite() && frame.fract() == 0.0) {
+            return Err(Failure::argument("`time` must be finite, and `frame` an integer"));
+        }
         (scene.frame.time, scene.frame.frame) = (time, frame);
         Ok(())
     })

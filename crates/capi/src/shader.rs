@@ -4,7 +4,7 @@ use std::ffi::{CString, c_char};
 
 use sdfc::{Emit, Reflection, ShaderOptions, Target, uniform_bytes};
 
-use crate::boundary::{Failure, c_string, fill, guarded, handle, handle_mut, slice_mut, text};
+use crate::boundary::{Failure, boxed, free, guarded, handle, json, pointer_into, store, text};
 use crate::scene::Scene;
 use crate::status::Status;
 
@@ -21,7 +21,8 @@ pub struct Shader {
 ///
 /// `target` is one of `wgsl`, `glsl`, `glsl-es`, `hlsl`, `msl`, `spirv`, `shadertoy`. `part` is one
 /// of `field`, `march`, `render`. Names in the shader begin with `prefix`, and the first buffer has
-/// the index `binding` in `group`. The defaults for null are `wgsl`, `field` and `sdf_`.
+/// the index `binding` in `group`; both are at most 65535. The defaults for null are `wgsl`,
+/// `field` and `sdf_`.
 ///
 /// Returns null if the shader cannot be written. Free the shader with `sdfc_shader_free`.
 ///
@@ -37,8 +38,7 @@ pub unsafe extern "C" fn sdfc_shader_write(
     group: u32,
     binding: u32,
 ) -> *mut Shader {
-    let mut made = std::ptr::null_mut();
-    guarded(|| {
+    boxed(|| {
         // SAFETY: guaranteed by the caller, see the safety section of this function.
         let (scene, [target, part, prefix]) = unsafe {
             let or = |given: *const c_char, default| {
@@ -61,15 +61,12 @@ pub unsafe extern "C" fn sdfc_shader_write(
             .group(group)
             .binding(binding);
         let written = scene.scene.write_shader(&options)?;
-        let described = scene.scene.reflect(&options, &written);
-        let described = c_string(serde_json::to_string(&described).map_err(Failure::internal)?)?;
+        let described = json(&scene.scene.reflect(&options, &written))?;
         let mut code = written.code.into_bytes();
         code.push(0);
         let shader = Shader { code, reflection: written.reflection, described };
-        made = Box::into_raw(Box::new(shader));
-        Ok(())
-    });
-    made
+        Ok(shader)
+    })
 }
 
 /// Returns the source of the shader, or its words in SPIR-V, with a null byte behind. If `length`
@@ -90,7 +87,7 @@ pub unsafe extern "C" fn sdfc_shader_code(
         let shader = unsafe { handle(shader)? };
         if !length.is_null() {
             // SAFETY: the pointer is not null, and the caller guarantees that it may be written.
-            unsafe { *length = shader.code.len() - 1 };
+            unsafe { store(length, &[shader.code.len() - 1])? };
         }
         code = shader.code.as_ptr().cast();
         Ok(())
@@ -106,13 +103,8 @@ pub unsafe extern "C" fn sdfc_shader_code(
 /// `shader` is null or a valid shader, and is not freed while the string is used.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdfc_shader_reflection(shader: *const Shader) -> *const c_char {
-    let mut described = std::ptr::null();
-    guarded(|| {
-        // SAFETY: guaranteed by the caller, see the safety section of this function.
-        described = unsafe { handle(shader)? }.described.as_ptr();
-        Ok(())
-    });
-    described
+    // SAFETY: guaranteed by the caller, see the safety section of this function.
+    unsafe { pointer_into(shader, |shader| shader.described.as_ptr()) }
 }
 
 /// Computes the bytes of the shader's uniform buffer for the current values of the scene's params.
@@ -134,15 +126,19 @@ pub unsafe extern "C" fn sdfc_shader_uniform(
 ) -> Status {
     guarded(|| {
         // SAFETY: guaranteed by the caller, see the safety section of this function.
-        let (shader, scene, length) =
-            unsafe { (handle(shader)?, handle(scene)?, handle_mut(length)?) };
+        let (shader, scene) = unsafe { (handle(shader)?, handle(scene)?) };
         let found = uniform_bytes(&shader.reflection, &scene.frame);
-        *length = found.len();
+        // SAFETY: guaranteed by the caller, see the safety section of this function.
+        unsafe { store(length, &[found.len()])? };
         if bytes.is_null() {
             return Ok(());
         }
-        // SAFETY: the pointer is not null, and the caller guarantees the room.
-        fill(unsafe { slice_mut(bytes, capacity)? }, &found)
+        if found.len() > capacity {
+            let length = found.len();
+            return Err(Failure::argument(format!("the buffer is too small for {length} bytes")));
+        }
+        // SAFETY: the pointer is not null, and there is room for the bytes.
+        unsafe { store(bytes, &found) }
     })
 }
 
@@ -153,10 +149,8 @@ pub unsafe extern "C" fn sdfc_shader_uniform(
 /// The shader was returned by `sdfc_shader_write` and is not used again.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdfc_shader_free(shader: *mut Shader) {
-    if !shader.is_null() {
-        // SAFETY: the pointer came from a `Box`, and the caller does not use it again.
-        drop(unsafe { Box::from_raw(shader) });
-    }
+    // SAFETY: guaranteed by the caller, see the safety section of this function.
+    unsafe { free(shader) }
 }
 
 fn target_of(name: &str) -> Result<Target, Failure> {

@@ -224,3 +224,110 @@ fn uniform_bytes_match_the_reflection() {
         sdfc_scene_free(scene);
     }
 }
+
+#[test]
+fn a_wrong_clause_is_an_error() {
+    assert!(compile(b"solid egg() exact = length(p*[1,0.7,1])-1\negg()").is_null());
+    assert!(error().contains("E0502"), "{}", error());
+}
+
+#[test]
+fn diagnostics_are_null_if_nothing_was_compiled() {
+    let (source, length) = (c"sphere(1)".as_ptr(), 9);
+    let sources = [
+        (null(), source, null()),
+        (NOT_UTF8.as_ptr(), source, null()),
+        (c"a".as_ptr(), NOT_UTF8.as_ptr(), null()),
+        (c"a".as_ptr(), source, c"[1]".as_ptr()),
+    ];
+    for (name, source, values) in sources {
+        let length = if source == NOT_UTF8.as_ptr() { 2 } else { length };
+        let mut found = std::ptr::dangling_mut::<c_char>();
+        let none = null_mut();
+        let scene = unsafe {
+            sdfc_compile_with_values(name, source, length, values, None, none, &mut found)
+        };
+        assert!(scene.is_null() && found.is_null(), "{}", error());
+    }
+}
+
+#[test]
+fn times_are_finite_and_frames_are_integers() {
+    let scene = compile(b"sphere(1).translate(x: time)");
+    for (time, frame) in [(f64::NAN, 0.0), (f64::INFINITY, 0.0), (0.0, f64::NAN), (0.0, 0.5)] {
+        assert_eq!(unsafe { sdfc_set_time(scene, time, frame) }, Status::Argument);
+        assert_eq!(error(), "`time` must be finite, and `frame` an integer");
+    }
+    assert_eq!(unsafe { sdfc_set_time(scene, -1.5, -3.0) }, Status::Ok);
+    unsafe { sdfc_scene_free(scene) };
+}
+
+#[test]
+fn groups_and_bindings_have_a_limit() {
+    let scene = compile(b"sphere(1)");
+    let write = |group, binding| unsafe {
+        let shader = sdfc_shader_write(scene, null(), null(), null(), group, binding);
+        sdfc_shader_free(shader);
+        !shader.is_null()
+    };
+    assert!(write(65_535, 65_535));
+    for (group, binding) in [(65_536, 0), (0, 65_536), (0, u32::MAX)] {
+        assert!(!write(group, binding));
+        assert_eq!(sdfc_error_status(), Status::Argument);
+        assert!(error().contains("65535"), "{}", error());
+    }
+    unsafe { sdfc_scene_free(scene) };
+}
+
+#[test]
+fn a_camera_says_what_it_expects() {
+    let scene = compile(b"sphere(1)");
+    let render = |camera: &str| {
+        let options = format!("{{\"size\": [4, 4], \"backend\": \"cpu\", \"camera\": {camera}}}");
+        let options = CString::new(options).unwrap();
+        unsafe {
+            let picture = sdfc_render(scene, options.as_ptr(), None, null_mut());
+            sdfc_picture_free(picture);
+            if picture.is_null() { Err((sdfc_error_status(), error())) } else { Ok(()) }
+        }
+    };
+    let refused = [
+        (r#"{"eye": [0, 0, 5], "fov": 7}"#, "radians"),
+        (r#"{"eye": [0, 0, 5], "fov": 40}"#, "radians"),
+        (r#"{"eye": [0, 0, 5], "fov": 0}"#, "radians"),
+        (r#"{"eye": [0, 0, 5], "height": 0}"#, "height is 0; it must be above 0"),
+        (r#"{"eye": [0, 0, 1e-320]}"#, "one point"),
+    ];
+    for (camera, said) in refused {
+        let (status, message) = render(camera).unwrap_err();
+        assert!(status == Status::Argument && message.contains(said), "{camera}: {message}");
+    }
+    for camera in [
+        r#"{"eye": [0, 0, 5]}"#,
+        r#"{"eye": [0, 0, 5], "fov": 3.141592}"#,
+        r#"{"eye": [0, 0, 5], "height": 3e6}"#,
+    ] {
+        assert_eq!(render(camera), Ok(()), "{camera}");
+    }
+    unsafe { sdfc_scene_free(scene) };
+}
+
+#[test]
+fn results_may_lie_where_the_points_were() {
+    let scene = compile(b"sphere(1)");
+    // Room for a gradient and a distance for each of the two points.
+    let mut memory = [3.0, 0.0, 0.0, 0.0, 2.0, 0.0, 9.0, 9.0];
+    let first = memory.as_mut_ptr();
+    unsafe {
+        assert_eq!(sdfc_gradient(scene, first, 2, first), Status::Ok);
+        assert_eq!(memory, [1.0, 0.0, 0.0, 2.0, 0.0, 1.0, 0.0, 1.0]);
+        let mut memory = [3.0, 0.0, 0.0, 0.0, 2.0, 0.0];
+        let first = memory.as_mut_ptr();
+        assert_eq!(sdfc_distance(scene, first, 2, first), Status::Ok);
+        assert_eq!(memory[..2], [2.0, 1.0]);
+        let corner = memory.as_mut_ptr();
+        assert_eq!(sdfc_bounds(scene, corner, corner), Status::Ok);
+        assert_eq!(memory[..3], [1.0; 3]);
+        sdfc_scene_free(scene);
+    }
+}

@@ -62,3 +62,19 @@ fn a_refused_mesh_leaves_no_file() {
     refused(&["mesh", "floor.sdf", "-o", "floor.png"], 2, ".stl, .obj, .ply, .glb or .3mf");
     refused(&["mesh", "floor.sdf", "--error", "0"], 2, "above 0");
 }
+
+#[test]
+fn an_error_greater_than_the_scene_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("ball.sdf"), "sphere(1)\n").unwrap();
+    for error in [["--error", "1e30"], ["--error-relative", "1.01"]] {
+        for command in ["mesh", "contour"] {
+            let output = run(folder.path(), &[command, "ball.sdf", error[0], error[1]]);
+            let message = String::from_utf8(output.stderr).unwrap();
+            assert_eq!(output.status.code(), Some(2), "{message}");
+            let expected = "whose longest side is 2: state at most 2, such as 0.002";
+            assert!(message.contains(expected), "{message}");
+        }
+    }
+    assert_eq!(names(folder.path()), ["ball.sdf"]);
+}

@@ -9,7 +9,7 @@ use crate::grid::Grid;
 use crate::nearness::{Clipped, clip, crosses_once, distance};
 use crate::refine::{OnProgress, report};
 use crate::surface::{Mesh, MeshCertificate};
-use crate::vector::{Vec3, add, between, length, scale, sub, unit};
+use crate::vector::{Vec3, add, between, length, scale, sub, total, unit};
 
 /// Boxes that are divided between two reports of progress.
 const CHUNK: usize = 1024;
@@ -139,7 +139,7 @@ impl<'f> Prover<'_, 'f> {
         }
         certificate.is_proven = undecided.is_empty();
         certificate.undecided = undecided.len() as u64;
-        certificate.undecided_volume = undecided.iter().map(volume).sum();
+        certificate.undecided_volume = total(undecided.iter().map(volume));
         certificate.undecided_boxes =
             undecided.iter().copied().take(MeshCertificate::MAX_BOXES).collect();
         Ok(Proof { certificate, undecided })

@@ -14,8 +14,9 @@ use crate::make::Maker;
 use crate::mesh::{check, fitting};
 use crate::outline::Outline;
 use crate::plane::Plane;
-use crate::polygon::{area, parents};
+use crate::polygon::{area, parents, sides};
 use crate::surface::MeshCertificate;
+use crate::vector::total;
 
 /// The boundary of a scene's section by a plane, in the plane's coordinates.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -141,7 +142,7 @@ impl ContourCertificate {
             error,
             is_proven,
             undecided,
-            undecided_area: boxes.iter().map(|[lo, hi]| (hi[0] - lo[0]) * (hi[1] - lo[1])).sum(),
+            undecided_area: total(boxes.iter().map(|[lo, hi]| (hi[0] - lo[0]) * (hi[1] - lo[1]))),
             undecided_boxes: boxes.into_iter().take(MeshCertificate::MAX_BOXES).collect(),
             empty_boxes,
             sheet_boxes,
@@ -168,13 +169,13 @@ impl std::fmt::Display for ContourCertificate {
 impl Contour {
     /// Returns the area of the section: that of outer paths less that of holes.
     pub fn area(&self) -> f64 {
-        self.paths.iter().map(|path| area(&path.points)).sum()
+        total(self.paths.iter().map(|path| area(&path.points)))
     }
 
     /// Returns the length of all paths.
     pub fn length(&self) -> f64 {
         let length = |[a, b]: [[f64; 2]; 2]| (b[0] - a[0]).hypot(b[1] - a[1]);
-        self.paths.iter().flat_map(|path| crate::polygon::sides(&path.points)).map(length).sum()
+        total(self.paths.iter().flat_map(|path| sides(&path.points)).map(length))
     }
 
     /// Returns the lowest and the highest corner of a rectangle around all paths; `None` without

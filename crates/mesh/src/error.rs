@@ -86,6 +86,17 @@ pub enum MeshError {
         /// The smallest possible error.
         least: f64,
     },
+    /// The error is greater than the scene.
+    #[error(
+        "the error {error} is greater than the scene, whose longest side is {longest}: state at \
+         most {longest}, such as {}", 1e-3 * longest
+    )]
+    TooCoarse {
+        /// The error that was asked for.
+        error: f64,
+        /// The longest side of the scene's bounds.
+        longest: f64,
+    },
     /// The mesh needs more cells than the limit.
     #[error("the mesh needs more than {limit} cells (the limit `max_cells`); allow a larger error")]
     TooManyCells {
@@ -134,6 +145,7 @@ impl MeshError {
         match self {
             Self::Error(_)
             | Self::TooFine { .. }
+            | Self::TooCoarse { .. }
             | Self::TooManyCells { .. }
             | Self::Resolution { .. }
             | Self::NoSection { .. } => true,

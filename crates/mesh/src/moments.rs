@@ -9,7 +9,7 @@ use crate::error::{MeshError, Phase};
 use crate::field::{Frame, LocalField, Prism, Prober};
 use crate::half_space::Share;
 use crate::refine::{OnProgress, report};
-use crate::vector::{Vec3, add, between, length, sub, unit};
+use crate::vector::{Vec3, add, between, length, sub, total, unit};
 
 /// Boxes that are divided at once.
 const CHUNK: usize = 512;
@@ -224,7 +224,7 @@ impl<'f> Integrator<'_, 'f> {
         Ok(Integrals {
             moments: moved.plus(parts(target)),
             about: target,
-            area: finished.iter().map(|part| part.area).sum(),
+            area: total(finished.iter().map(|part| part.area)),
             inner: inner.map(|[lo, hi]| between(lo, hi, 0.5)),
             cells,
             is_limited,

@@ -3,7 +3,7 @@
 use rustc_hash::FxHashMap;
 use serde::Serialize;
 
-use crate::vector::{cross, dot, length, sub};
+use crate::vector::{cross, dot, length, sub, total};
 
 /// A closed mesh of triangles.
 ///
@@ -92,7 +92,7 @@ impl Mesh {
             let [a, b, c] = self.corners(*triangle).map(|corner| sub(corner, near));
             dot(a, cross(b, c)) / 6.0
         };
-        self.triangles.iter().map(part).sum()
+        total(self.triangles.iter().map(part))
     }
 
     /// Returns the area of all triangles.
@@ -101,7 +101,7 @@ impl Mesh {
             let [a, b, c] = self.corners(*triangle);
             0.5 * length(cross(sub(b, a), sub(c, a)))
         };
-        self.triangles.iter().map(part).sum()
+        total(self.triangles.iter().map(part))
     }
 
     /// Returns the lowest and the highest corner of a box around the mesh; `None` without vertices.

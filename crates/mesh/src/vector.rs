@@ -33,6 +33,11 @@ pub(crate) fn length(a: Vec3) -> f64 {
     dot(a, a).sqrt()
 }
 
+/// The sum of numbers. That of none is 0, while `Iterator::sum` gives -0.
+pub(crate) fn total(numbers: impl Iterator<Item = f64>) -> f64 {
+    numbers.fold(0.0, |sum, number| sum + number)
+}
+
 /// The vector with length 1; `None` if it has no direction.
 pub(crate) fn unit(a: Vec3) -> Option<Vec3> {
     let length = length(a);

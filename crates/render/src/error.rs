@@ -71,7 +71,7 @@ pub enum RenderError {
     /// The scene exceeds a limit of this adapter.
     #[error(
         "{what} would take {needed}, and this adapter's `{name}` is {limit}; draw fewer parts in \
-         one scene, or draw on the CPU (`--backend cpu`)"
+         one scene, or draw on the CPU instead"
     )]
     Limit {
         /// The thing that needs it.

@@ -23,9 +23,17 @@ pub enum Error {
     /// The spacing of isolines is not above 0 and finite.
     #[error("a spacing of isolines of {0}: it must be above 0 and finite")]
     Spacing(f64),
+    /// A bind group or binding is greater than [`MAX_BINDING`](crate::MAX_BINDING).
+    #[error("a group or binding of {number}: it must be at most {limit}")]
+    Binding {
+        /// The group or binding.
+        number: u32,
+        /// The limit.
+        limit: u32,
+    },
     /// A contour of regions in another plane than z = 0.
     #[cfg(feature = "mesh")]
-    #[error("the scene draws regions, which lie in the plane z=0: leave `--plane` out")]
+    #[error("the scene draws regions, which lie in the plane z=0: state no other plane")]
     PlaneOfRegions,
     /// The field has more nodes than the limit.
     #[error(transparent)]
@@ -70,6 +78,7 @@ impl Error {
             | Self::Planar(_)
             | Self::NotPlanar
             | Self::Spacing(_)
+            | Self::Binding { .. }
             | Self::Expand(_)
             | Self::Codegen(_)
             | Self::Evaluate(_)
@@ -83,10 +92,14 @@ impl Error {
     pub fn is_call(&self) -> bool {
         match self {
             Self::Codegen(error) => error.is_call(),
-            Self::Render(error) => {
-                matches!(error, RenderError::Size(_) | RenderError::MethodNotOnCpu(_))
-            }
-            Self::Planar(_) | Self::NotPlanar | Self::Spacing(_) => true,
+            Self::Render(error) => matches!(
+                error,
+                RenderError::Size(_)
+                    | RenderError::Region { .. }
+                    | RenderError::Samples(_)
+                    | RenderError::MethodNotOnCpu(_)
+            ),
+            Self::Planar(_) | Self::NotPlanar | Self::Spacing(_) | Self::Binding { .. } => true,
             Self::NothingDrawn | Self::Expand(_) | Self::Evaluate(_) | Self::View(_) => false,
             #[cfg(feature = "mesh")]
             Self::Mesh(error) => error.is_call(),

@@ -102,7 +102,7 @@ pub use reflection::{
     StructRow, UniformRow,
 };
 pub use scene::{FrontTimes, Scene};
-pub use shader::{Emit, ShaderOptions, VIEW_SIZE};
+pub use shader::{Emit, MAX_BINDING, ShaderOptions, VIEW_SIZE};
 pub use shape_facts::ShapeFacts;
 pub use uniforms::uniform_bytes;
 
@@ -119,9 +119,9 @@ pub use sdfc_lang::{CompileValues, NoFiles, Resolver};
 pub use sdfc_march::{Method, UnknownMethod};
 #[cfg(feature = "mesh")]
 pub use sdfc_mesh::{
-    Clearance, Contour, ContourCertificate, ContourFormat, ContourPath, DistanceGrid, EncodeError,
-    GridFormat, Measurements, Mesh, MeshCertificate, MeshError, MeshFormat, Phase as MeshPhase,
-    Plane, Progress as MeshProgress, Proven,
+    Clearance, Contour, ContourCertificate, ContourFormat, ContourPath, ContourReport,
+    DistanceGrid, EncodeError, GridFormat, Measurements, Mesh, MeshCertificate, MeshError,
+    MeshFormat, MeshReport, Phase as MeshPhase, Plane, Progress as MeshProgress, Proven,
 };
 #[cfg(feature = "render")]
 pub use sdfc_render::{Animation, Image, Progress, RasterKind, Stats, Tile, no_progress};

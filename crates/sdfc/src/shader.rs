@@ -10,6 +10,9 @@ use sdfc_render::{Tile, View, view_bytes};
 use crate::error::Error;
 use crate::scene::Scene;
 
+/// The greatest bind group and the greatest binding of a shader.
+pub const MAX_BINDING: u32 = 65_535;
+
 /// The part of a shader that is written.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Emit {
@@ -43,9 +46,9 @@ pub struct ShaderOptions {
     pub method: Option<Method>,
     /// Prefix of every name; ignored by [`Target::Shadertoy`].
     pub prefix: String,
-    /// Bind group of the buffers, if the target has groups.
+    /// Bind group of the buffers, if the target has groups; at most [`MAX_BINDING`].
     pub group: u32,
-    /// Binding of the first buffer, if the target has bindings.
+    /// Binding of the first buffer, if the target has bindings; at most [`MAX_BINDING`].
     pub binding: u32,
 }
 
@@ -181,8 +184,9 @@ impl Scene {
     ///
     /// # Errors
     ///
-    /// [`Error::Codegen`], also if the target does not support the options; [`Error::View`] for
-    /// [`Target::Shadertoy`] if the settings give no valid view.
+    /// [`Error::Codegen`], also if the target does not support the options; [`Error::Binding`];
+    /// [`Error::Planar`]; [`Error::View`] for [`Target::Shadertoy`] if the settings give no valid
+    /// view.
     pub fn write_shader(&self, options: &ShaderOptions) -> Result<Written, Error> {
         let shader = self.shader(options)?;
         let (version, name) = (env!("CARGO_PKG_VERSION"), &self.id.name);
@@ -195,13 +199,17 @@ impl Scene {
     fn shader(&self, options: &ShaderOptions) -> Result<Shader, Error> {
         let ShaderOptions { target, stage, prefix, group, binding, .. } = options.clone();
         let method = options.method.unwrap_or(self.method());
+        let number = group.max(binding);
+        if number > MAX_BINDING {
+            return Err(Error::Binding { number, limit: MAX_BINDING });
+        }
         if options.emit == Emit::Render && !target.has_stage(stage) {
             let what = stage.name();
             return Err(sdfc_codegen::Error::Unsupported { target, what }.into());
         }
         let lists = target.lists();
         if self.is_planar() && options.emit == Emit::March {
-            return Err(Error::Planar("`--emit march`, which finds where rays meet surfaces,"));
+            return Err(Error::Planar("the ray method"));
         }
         let functions = || {
             let prefix = prefix.clone();
@@ -258,6 +266,22 @@ mod tests {
         };
         assert!(!says("sphere(1)")?);
         assert!(says("solid s() = p.x * p.x + p.y * p.y - 1\ns()")?);
+        Ok(())
+    }
+
+    #[test]
+    fn groups_and_bindings_have_a_limit() -> Result<(), Error> {
+        let scene = Compiler::new().compile("a.sdf", "sphere(1)");
+        let scene = scene.map_err(|_| Error::NothingDrawn)?;
+        let write = |group, binding| {
+            let options = ShaderOptions::new().group(group).binding(binding);
+            scene.write_shader(&options).map(|_| ())
+        };
+        write(MAX_BINDING, MAX_BINDING)?;
+        for (group, binding) in [(MAX_BINDING + 1, 0), (0, u32::MAX)] {
+            let refused = write(group, binding);
+            assert!(matches!(&refused, Err(error @ Error::Binding { .. }) if error.is_call()));
+        }
         Ok(())
     }
 

@@ -24,7 +24,7 @@ distances = scene.distance(points)
 print(f"{len(points)} distances in {time.perf_counter() - start:.2f} s")
 
 # %% [markdown]
-# The part of the points inside estimates the volume; `measure` proves it.
+# The fraction of the points that lie inside estimates the volume; `measure` proves it.
 
 # %%
 estimate = (distances < 0).mean() * np.prod(high - low)

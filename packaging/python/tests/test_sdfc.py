@@ -164,6 +164,9 @@ class Params(unittest.TestCase):
     def test_time_and_frame_move_a_scene(self) -> None:
         scene = sdfc.compile("sphere(1).translate(x: time)")
         self.assertEqual(float(scene.at(time=3).distance([3, 0, 0])), -1)
+        for wrong in ({"time": math.nan}, {"time": math.inf}, {"frame": 0.5}):
+            with self.subTest(wrong), self.assertRaisesRegex(sdfc.ArgumentError, "must be finite"):
+                scene.at(**wrong)
 
 
 class Errors(unittest.TestCase):
@@ -219,6 +222,44 @@ class Errors(unittest.TestCase):
             with self.assertRaises(FileNotFoundError):
                 sdfc.load(Path(folder) / "none.sdf")
 
+    def test_a_clause_that_is_wrong_is_an_error(self) -> None:
+        with self.assertRaisesRegex(sdfc.CompileError, "E0502"):
+            sdfc.compile("solid egg() exact = length(p*[1,0.7,1])-1\negg()")
+
+    def test_a_file_is_read_as_the_command_line_reads_it(self) -> None:
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "scene.sdf"
+            path.write_bytes(b"sphere(1) // \xff")
+            with self.assertRaisesRegex(sdfc.ArgumentError, "not UTF-8"):
+                sdfc.load(path)
+            path.write_bytes(b"sphere(1)\r\nspere(1)")
+            with self.assertRaisesRegex(sdfc.CompileError, "scene.sdf:2:1"):
+                sdfc.load(path)
+            with path.open("wb") as file:
+                file.truncate((64 << 20) + 1)
+            with self.assertRaisesRegex(OSError, "larger than 64 MiB"):
+                sdfc.load(path)
+
+    @unittest.skipIf(os.name == "nt", "links need rights")
+    def test_links_out_of_the_folder_are_not_followed(self) -> None:
+        source = 'import ball from "ball.sdf"\nball()'
+        ball = "solid ball() = length(p) - 0.25"
+        with tempfile.TemporaryDirectory() as outer:
+            folder = Path(outer) / "scenes"
+            folder.mkdir()
+            (folder / "scene.sdf").write_text(source)
+            (Path(outer) / "ball.sdf").write_text(ball)
+            (folder / "ball.sdf").symlink_to("../ball.sdf")
+            with self.assertRaisesRegex(sdfc.CompileError, "E0209"):
+                sdfc.load(folder / "scene.sdf")
+            (folder / "ball.sdf").unlink()
+            (folder / "inside.sdf").write_text(ball)
+            (folder / "ball.sdf").symlink_to("inside.sdf")
+            # Also if the path to the folder has a link.
+            (Path(outer) / "other").symlink_to("scenes")
+            scene = sdfc.load(Path(outer) / "other/scene.sdf")
+            self.assertEqual(float(scene.distance([0, 0, 0])), -0.25)
+
 
 class Meshes(unittest.TestCase):
     def test_a_mesh_is_closed_and_on_the_surface(self) -> None:
@@ -235,6 +276,15 @@ class Meshes(unittest.TestCase):
         a, b, c = (mesh.vertices[mesh.triangles[:, i]] for i in range(3))
         self.assertAlmostEqual(np.einsum("ij,ij", a, np.cross(b, c)) / 6, mesh.volume)
         self.assertIsNone(sdfc.compile("sphere(1)").mesh(relative=0.1).colors)
+
+    def test_a_mesh_without_triangles_has_no_bounds(self) -> None:
+        # Two balls that are smaller than the error.
+        mesh = sdfc.compile("sphere(0.01) | sphere(0.01).translate(x: 10)").mesh(error=9)
+        self.assertEqual((len(mesh.triangles), mesh.bounds, mesh.area), (0, None, 0))
+        self.assertEqual(math.copysign(1, mesh.volume), 1)
+        for array in (mesh.vertices, mesh.triangles):
+            with self.assertRaisesRegex(ValueError, "read-only"):
+                array[:] = 0
 
     def test_arrays_keep_their_memory(self) -> None:
         vertices = sdfc.compile("sphere(1)").mesh(error=0.01).vertices
@@ -256,10 +306,15 @@ class Meshes(unittest.TestCase):
             self.assertEqual(size, 84 + 50 * len(mesh.triangles))
             with self.assertRaisesRegex(sdfc.ArgumentError, ".stl, .obj, .ply, .glb or .3mf"):
                 mesh.save(Path(folder) / "a.docx")
+            for extension in ("noext", "a.docx"):
+                with self.assertRaisesRegex(sdfc.ArgumentError, f"{extension}: meshes are"):
+                    mesh.save(Path(folder) / extension)
 
     def test_what_has_no_mesh_is_an_error(self) -> None:
         with self.assertRaisesRegex(sdfc.Error, "no limit along x"):
             sdfc.compile("plane(y: 0)").mesh()
+        with self.assertRaisesRegex(sdfc.ArgumentError, "longest side is 2: state at most 2"):
+            sdfc.compile("sphere(1)").mesh(1e300)
         for arguments in ({"error": -1}, {"error": math.nan}, {"error": 1, "relative": 1}):
             with self.subTest(arguments), self.assertRaises(sdfc.ArgumentError):
                 sdfc.compile("sphere(1)").mesh(**arguments)
@@ -301,7 +356,9 @@ class Meshes(unittest.TestCase):
             self.assertIn("<svg", (Path(folder) / "a.svg").read_text())
         with self.assertRaisesRegex(sdfc.ArgumentError, "meets no inside"):
             sdfc.compile("sphere(1)").contour([1, 0, 0], 2)
-        with self.assertRaisesRegex(sdfc.ArgumentError, "leave `normal` and `offset` out"):
+            with self.assertRaisesRegex(sdfc.ArgumentError, "noext: contours are"):
+                contour.save(Path(folder) / "noext")
+        with self.assertRaisesRegex(sdfc.ArgumentError, "plane z=0: state no other plane"):
             sdfc.compile("circle(1)").contour([1, 0, 0])
 
     def test_measurements_are_intervals_that_hold_the_truth(self) -> None:
@@ -351,6 +408,8 @@ class Pictures(unittest.TestCase):
         camera = {"eye": np.array([0, 0, 5]), "target": [0, 0, 0], "fov": math.radians(30)}
         picture = scene.render((31, 31), backend="cpu", camera=camera)
         self.assertAlmostEqual(float(picture.depths[15, 15]), 4, places=2)
+        with self.assertRaisesRegex(sdfc.ArgumentError, "40 radians"):
+            scene.render(backend="cpu", camera={"eye": [0, 0, 5], "fov": 40})
         with self.assertRaisesRegex(sdfc.ArgumentError, "unknown field `zoom`"):
             scene.render(camera={"eye": [0, 0, 5], "zoom": 2})
 
@@ -368,6 +427,13 @@ class Shaders(unittest.TestCase):
         self.assertEqual(sdfc.compile("sphere(1)").shader().uniform, b"")
         with self.assertRaisesRegex(sdfc.ArgumentError, "unknown target `cobol`; the targets are"):
             scene.shader("cobol")
+        for wrong in (-1, 65_536, 2**32 + 5):
+            with self.assertRaisesRegex(sdfc.ArgumentError, "65535"):
+                scene.shader(binding=wrong)
+            with self.assertRaisesRegex(sdfc.ArgumentError, "65535"):
+                scene.shader(group=wrong)
+        with self.assertRaisesRegex(sdfc.ArgumentError, "and the ray method needs solids"):
+            sdfc.compile("circle(1)").shader(part="march")
 
 
 class Documents(unittest.TestCase):

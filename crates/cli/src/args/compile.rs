@@ -3,12 +3,9 @@
 use std::path::PathBuf;
 
 use clap::ValueEnum;
-use sdfc::Method;
+use sdfc::{MAX_BINDING, Method};
 
-use super::values::{Assignment, assignment, methods};
-
-/// The greatest bind group or binding.
-const MAX_BINDING: i64 = 65_535;
+use super::values::{Assignment, LiveLiterals, assignment, methods};
 
 /// Arguments of `compile`.
 #[derive(clap::Args, Debug)]
@@ -34,10 +31,12 @@ pub struct Compile {
     #[arg(long, value_name = "NAME")]
     pub prefix: Option<String>,
     /// Bind group of the buffers [default: 0]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(..=MAX_BINDING))]
+    #[arg(long, value_name = "N",
+          value_parser = clap::value_parser!(u32).range(..=i64::from(MAX_BINDING)))]
     pub group: Option<u32>,
     /// Binding of the first buffer; the others follow [default: 0]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(..=MAX_BINDING))]
+    #[arg(long, value_name = "N",
+          value_parser = clap::value_parser!(u32).range(..=i64::from(MAX_BINDING)))]
     pub binding: Option<u32>,
     /// Output file for names, layouts and properties of the field, as JSON; `-` is stdout
     #[arg(long, value_name = "OUT.json")]
@@ -46,10 +45,9 @@ pub struct Compile {
     /// is written as in a scene: 0.5, 90deg, true, #d94f30, or the name of a choice
     #[arg(long, value_name = "NAME=VALUE", value_parser = assignment)]
     pub set: Vec<Assignment>,
-    /// Turn the numbers in the scene into params, named at_LINE_COLUMN, that change without
-    /// recompiling
-    #[arg(long)]
-    pub live_literals: bool,
+    /// Numbers of the scene as params.
+    #[command(flatten)]
+    pub live: LiveLiterals,
 }
 
 /// Shader languages.

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use sdfc::Plane;
 
-use super::values::{Values, above_0, plane};
+use super::values::{Values, length, plane};
 
 /// Arguments of `mesh`.
 #[derive(clap::Args, Debug)]
@@ -15,7 +15,7 @@ pub struct Mesh {
     /// scene's name with .stl, in the current folder]
     #[arg(short, long, value_name = "OUT")]
     pub output: Option<PathBuf>,
-    /// How exact it is.
+    /// The error limit.
     #[command(flatten)]
     pub exactness: Exactness,
     /// Output file for the certificate, as JSON; `-` is stdout
@@ -39,7 +39,7 @@ pub struct Contour {
     /// 1,1,0=2
     #[arg(long, value_name = "AXIS=LENGTH", default_value = "z=0", value_parser = plane)]
     pub plane: Plane,
-    /// How exact it is.
+    /// The error limit.
     #[command(flatten)]
     pub exactness: Exactness,
     /// Output file for the certificate and the paths, as JSON; `-` is stdout
@@ -57,7 +57,7 @@ pub struct Measure {
     pub file: PathBuf,
     /// Measure the volume to this fraction of itself; the center of mass and the extent to this
     /// fraction of the longest side of the scene's bounds
-    #[arg(long, value_name = "FRACTION", default_value_t = 0.001, value_parser = above_0)]
+    #[arg(long, value_name = "FRACTION", default_value_t = 0.001, value_parser = length)]
     pub error_relative: f64,
     /// Measure the smallest distance between two solids instead, by their names in the scene
     #[arg(long, value_name = "NAME", num_args = 2)]
@@ -93,15 +93,15 @@ pub struct Bake {
     pub values: Values,
 }
 
-/// How exact a mesh or a contour is.
+/// The error limit of a mesh or a contour.
 #[derive(clap::Args, Debug)]
 pub struct Exactness {
-    /// Greatest distance from the surface, in scene units, of what is written, and of the surface
-    /// from it
-    #[arg(long, value_name = "LENGTH", value_parser = above_0, conflicts_with = "error_relative")]
+    /// Greatest distance between the surface and the mesh or contour, in scene units, in both
+    /// directions
+    #[arg(long, value_name = "LENGTH", value_parser = length, conflicts_with = "error_relative")]
     pub error: Option<f64>,
     /// The same, as a fraction of the longest side of the scene's bounds [default: 0.001]
-    #[arg(long, value_name = "FRACTION", value_parser = above_0)]
+    #[arg(long, value_name = "FRACTION", value_parser = length)]
     pub error_relative: Option<f64>,
     /// Most cells that are examined
     #[arg(long, value_name = "N")]

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use sdfc::Method;
 
-use super::values::{methods, positive, scene_methods, size};
+use super::values::{methods, pixel_widths, scene_methods, size};
 
 /// Arguments of `bench`.
 #[derive(clap::Args, Debug)]
@@ -86,7 +86,7 @@ pub struct Tune {
     /// The scene; `-` is stdin
     pub file: PathBuf,
     /// Greatest error in depth (99th percentile), in widths of a pixel
-    #[arg(long, value_name = "PX", value_parser = positive)]
+    #[arg(long, value_name = "PX", value_parser = pixel_widths)]
     pub max_error: f64,
     /// Output file for all measurements, as JSON like that of `chart`; `-` is stdout
     #[arg(long, value_name = "OUT.json")]

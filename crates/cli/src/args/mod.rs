@@ -15,7 +15,7 @@ pub use geometry::{Bake, Contour, Exactness, Measure, Mesh};
 pub use measurement::{Bench, Cache, Chart, Tune};
 pub use render::{Backend, Join, Render};
 pub use values::Assignment;
-use values::assignment;
+use values::Params;
 
 /// Compiles scenes of signed distance functions to shaders and pictures.
 #[derive(Debug, Parser)]
@@ -158,10 +158,9 @@ pub struct View {
 pub struct Explain {
     /// The scene; `-` is stdin
     pub file: PathBuf,
-    /// Set a param, with the value written as in a scene: 0.5, 90deg, true, #d94f30, or the name
-    /// of a choice
-    #[arg(long, value_name = "NAME=VALUE", value_parser = assignment)]
-    pub set: Vec<Assignment>,
+    /// Values of params.
+    #[command(flatten)]
+    pub params: Params,
     /// Print JSON to stdout
     #[arg(long)]
     pub json: bool,

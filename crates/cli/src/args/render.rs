@@ -6,7 +6,7 @@ use clap::ValueEnum;
 use sdfc::Method;
 use sdfc_render::MAX_SAMPLES;
 
-use super::values::{Assignment, assignment, finite, methods, size};
+use super::values::{LiveLiterals, Params, finite, methods, size};
 use crate::farm::options::Farm;
 use crate::sequence::{self, Frames};
 
@@ -31,14 +31,12 @@ pub struct Render {
     /// When to turn similar parts of the scene into loops
     #[arg(long, value_enum, default_value_t, value_name = "WHEN")]
     pub loops: Loops,
-    /// Set a param, with the value written as in a scene: 0.5, 90deg, true, #d94f30, or the name
-    /// of a choice
-    #[arg(long, value_name = "NAME=VALUE", value_parser = assignment)]
-    pub set: Vec<Assignment>,
-    /// Turn the numbers in the scene into params, named at_LINE_COLUMN, that change without
-    /// recompiling
-    #[arg(long)]
-    pub live_literals: bool,
+    /// Values of params.
+    #[command(flatten)]
+    pub params: Params,
+    /// Numbers of the scene as params.
+    #[command(flatten)]
+    pub live: LiveLiterals,
     /// Time in seconds
     #[arg(long, value_name = "S", default_value_t = 0.0, allow_negative_numbers = true,
           value_parser = finite, conflicts_with = "frames")]
@@ -54,7 +52,8 @@ pub struct Render {
     #[arg(long, value_name = "N",
           value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_SAMPLES)))]
     pub samples: Option<u32>,
-    /// Draw isolines this far apart, in scene units, in a picture of regions; default the scene's
+    /// Distance between the isolines of a picture of regions, in scene units [default: that of the
+    /// scene]
     #[arg(long, value_name = "SPACING")]
     pub isolines: Option<f64>,
     /// Output file for depths, as EXR: channel Z is the distance along each ray in scene units,
@@ -90,8 +89,8 @@ pub struct Join {
 /// The device that draws.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum Backend {
-    /// The GPU if there is one, otherwise the CPU, which also draws long formulas for which a
-    /// software driver would take longer
+    /// The GPU if there is one, otherwise the CPU. The CPU also draws long formulas that a software
+    /// driver would draw more slowly
     #[default]
     Auto,
     /// The GPU

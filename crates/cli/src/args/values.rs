@@ -8,14 +8,31 @@ use sdfc_render::{MAX_PIXELS, MAX_SIDE};
 /// Values of params and time.
 #[derive(clap::Args, Debug)]
 pub struct Values {
-    /// Set a param, with the value written as in a scene: 0.5, 90deg, true, #d94f30, or the name
-    /// of a choice
-    #[arg(long, value_name = "NAME=VALUE", value_parser = assignment)]
-    pub set: Vec<Assignment>,
+    /// Values of params.
+    #[command(flatten)]
+    pub params: Params,
     /// Time in seconds
     #[arg(long, value_name = "S", default_value_t = 0.0, allow_negative_numbers = true,
           value_parser = finite)]
     pub time: f64,
+}
+
+/// Values of params.
+#[derive(clap::Args, Debug)]
+pub struct Params {
+    /// Set a param, with the value written as in a scene: 0.5, 90deg, true, #d94f30, or the name
+    /// of a choice
+    #[arg(long, value_name = "NAME=VALUE", value_parser = assignment)]
+    pub set: Vec<Assignment>,
+}
+
+/// Numbers of the scene as params.
+#[derive(clap::Args, Debug)]
+pub struct LiveLiterals {
+    /// Turn the numbers in the scene into params, named at_LINE_COLUMN, that change without
+    /// recompiling
+    #[arg(long)]
+    pub live_literals: bool,
 }
 
 /// A param and its value as text.
@@ -77,16 +94,19 @@ pub(super) fn finite(text: &str) -> Result<f64, String> {
     number.ok_or_else(|| "expected a number of seconds, such as 1.5".to_owned())
 }
 
-/// Parses a number above 0.
-pub(super) fn positive(text: &str) -> Result<f64, String> {
-    let number = text.parse::<f64>().ok().filter(|number| number.is_finite() && *number > 0.0);
-    number.ok_or_else(|| "expected a number of pixel widths above 0, such as 0.05".to_owned())
+/// Parses a number of pixel widths above 0.
+pub(super) fn pixel_widths(text: &str) -> Result<f64, String> {
+    above_0(text, "a number of pixel widths above 0, such as 0.05")
 }
 
 /// Parses a length or a fraction above 0.
-pub(super) fn above_0(text: &str) -> Result<f64, String> {
+pub(super) fn length(text: &str) -> Result<f64, String> {
+    above_0(text, "a number above 0, such as 0.01")
+}
+
+fn above_0(text: &str, what: &str) -> Result<f64, String> {
     let number = text.parse::<f64>().ok().filter(|number| number.is_finite() && *number > 0.0);
-    number.ok_or_else(|| "expected a number above 0, such as 0.01".to_owned())
+    number.ok_or_else(|| format!("expected {what}"))
 }
 
 /// Parses `640x400` as `[640, 400]`.

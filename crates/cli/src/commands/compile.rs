@@ -20,7 +20,7 @@ pub fn run(args: &Compile, console: &Console) -> Result<(), Failure> {
         [Some(&args.output), args.reflect.as_ref()].into_iter().flatten().map(|p| &**p).collect();
     output::distinct(&args.file, &paths)?;
     let options = options(args)?;
-    let compiler = super::compiler_with(args.live_literals);
+    let compiler = super::compiler_with(args.live.live_literals);
     let scene = super::scene_with(&args.file, compiler, &args.set, console)?;
     let written = scene.write_shader(&options).map_err(|e| super::lowering(&e, console))?;
     let mut results = Vec::new();

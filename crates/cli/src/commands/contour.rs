@@ -3,25 +3,11 @@
 use std::path::Path;
 
 use sdfc::{Contour, ContourFormat};
-use serde::Serialize;
 
 use crate::args;
 use crate::console::Console;
 use crate::failure::Failure;
 use crate::output::WithReport;
-
-/// The report of `--json`.
-#[derive(Serialize)]
-struct Report<'a> {
-    /// Positions in space: of the origin of the section's coordinates, and their directions.
-    origin: [f64; 3],
-    axes: [[f64; 3]; 2],
-    area: f64,
-    length: f64,
-    bounds: Option<[[f64; 2]; 2]>,
-    #[serde(flatten)]
-    contour: &'a Contour,
-}
 
 /// Makes the contour, and prints what is proven.
 ///
@@ -34,25 +20,14 @@ pub fn run(args: &args::Contour, console: &Console) -> Result<(), Failure> {
     let (result, report) = (args.output.as_deref(), args.json.as_deref());
     let output = WithReport::new(&args.file, result, "svg", report)?;
     let format = ContourFormat::of(&output.path).map_err(Failure::Call)?;
-    let scene = super::scene_with(&args.file, super::compiler(), &args.values.set, console)?;
+    let scene = super::scene_with(&args.file, super::compiler(), &args.values.params.set, console)?;
     let options = super::mesh_options(&scene, &args.exactness, args.values.time);
     let contour = super::mesh_work("tracing", console, |progress| {
         scene.contour(args.plane, &options, progress)
     })?;
-    output.write(&format.encode(&contour), &describe(&contour, args))?;
+    output.write(&format.encode(&contour), &contour.report(&args.plane))?;
     print(&output.path, &contour, console);
     Ok(())
-}
-
-fn describe<'a>(contour: &'a Contour, args: &args::Contour) -> Report<'a> {
-    Report {
-        origin: args.plane.at([0.0; 2]),
-        axes: args.plane.axes(),
-        area: contour.area(),
-        length: contour.length(),
-        bounds: contour.bounds(),
-        contour,
-    }
 }
 
 fn print(path: &Path, contour: &Contour, console: &Console) {

@@ -11,7 +11,7 @@ use crate::output;
 ///
 /// The scene cannot be read, has errors or draws nothing; a param does not take its value.
 pub fn run(args: &Explain, console: &Console) -> Result<(), Failure> {
-    let scene = super::scene_with(&args.file, super::compiler(), &args.set, console)?;
+    let scene = super::scene_with(&args.file, super::compiler(), &args.params.set, console)?;
     let explanation = scene.explain().map_err(|e| super::lowering(&e, console))?;
     let bytes =
         if args.json { output::json(&explanation)? } else { explanation.to_string().into_bytes() };

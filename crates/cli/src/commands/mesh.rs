@@ -2,25 +2,12 @@
 
 use std::path::Path;
 
-use sdfc::{Mesh, MeshCertificate, MeshFormat};
-use serde::Serialize;
+use sdfc::{Mesh, MeshFormat};
 
 use crate::args;
 use crate::console::Console;
 use crate::failure::Failure;
 use crate::output::WithReport;
-
-/// The report of `--json`.
-#[derive(Serialize)]
-struct Report<'a> {
-    vertices: usize,
-    triangles: usize,
-    open_edges: usize,
-    volume: f64,
-    area: f64,
-    bounds: Option<[[f64; 3]; 2]>,
-    certificate: &'a MeshCertificate,
-}
 
 /// Makes the mesh, and prints what is proven.
 ///
@@ -33,25 +20,13 @@ pub fn run(args: &args::Mesh, console: &Console) -> Result<(), Failure> {
     let (result, report) = (args.output.as_deref(), args.json.as_deref());
     let output = WithReport::new(&args.file, result, "stl", report)?;
     let format = MeshFormat::of(&output.path).map_err(Failure::Call)?;
-    let scene = super::scene_with(&args.file, super::compiler(), &args.values.set, console)?;
+    let scene = super::scene_with(&args.file, super::compiler(), &args.values.params.set, console)?;
     let options = super::mesh_options(&scene, &args.exactness, args.values.time);
     let mesh = super::mesh_work("meshing", console, |progress| scene.mesh(&options, progress))?;
     let bytes = format.encode(&mesh).map_err(|error| Failure::Call(error.to_string()))?;
-    output.write(&bytes, &describe(&mesh))?;
+    output.write(&bytes, &mesh.report())?;
     print(&output.path, &mesh, console);
     Ok(())
-}
-
-fn describe(mesh: &Mesh) -> Report<'_> {
-    Report {
-        vertices: mesh.vertices.len(),
-        triangles: mesh.triangles.len(),
-        open_edges: mesh.open_edges(),
-        volume: mesh.volume(),
-        area: mesh.area(),
-        bounds: mesh.bounds(),
-        certificate: &mesh.certificate,
-    }
 }
 
 fn print(path: &Path, mesh: &Mesh, console: &Console) {

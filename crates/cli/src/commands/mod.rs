@@ -106,7 +106,7 @@ fn mesh_options(scene: &Scene, exactness: &Exactness, time: f64) -> MeshOptions 
     let options = MeshOptions::new().frame(values(scene, time));
     let options = match (exactness.error, exactness.error_relative) {
         (Some(length), _) => options.error(MeshSize::Length(length)),
-        (None, Some(part)) => options.error(MeshSize::Relative(part)),
+        (None, Some(fraction)) => options.error(MeshSize::Relative(fraction)),
         (None, None) => options,
     };
     exactness.max_cells.map_or(options.clone(), |limit| options.max_cells(limit))

@@ -35,8 +35,9 @@ const MAX_GIF_RATE: f64 = 50.0;
 pub fn run(args: &Render, console: &Console) -> Result<(), Failure> {
     let Some(Work { frames, region }) = Work::of(args, console)? else { return Ok(()) };
     let outputs = Outputs::new(args, region)?;
-    let compiler = super::compiler_with(args.live_literals).loops(args.loops.into());
-    let (scene, checksum) = super::scene_and_checksum(&args.file, compiler, &args.set, console)?;
+    let compiler = super::compiler_with(args.live.live_literals).loops(args.loops.into());
+    let (scene, checksum) =
+        super::scene_and_checksum(&args.file, compiler, &args.params.set, console)?;
     if !scene.draws() {
         return Err(super::lowering(&Error::NothingDrawn, console));
     }

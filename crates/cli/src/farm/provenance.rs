@@ -82,8 +82,8 @@ impl Drawing {
             march,
             backend: _,
             loops,
-            set,
-            live_literals,
+            params,
+            live,
             time,
             frames: _,
             fps,
@@ -94,7 +94,7 @@ impl Drawing {
             strict: _,
             farm: _,
         } = args;
-        let set = set.iter().map(|it| (it.name.clone(), it.value.clone()));
+        let set = params.set.iter().map(|it| (it.name.clone(), it.value.clone()));
         Self {
             sdfc: VERSION.to_owned(),
             scene,
@@ -108,7 +108,7 @@ impl Drawing {
                 isolines: isolines.map(|spacing| spacing.to_string()),
                 march: march.map(|method| method.name().to_owned()),
                 loops: format!("{:?}", loops).to_lowercase(),
-                live_literals: *live_literals,
+                live_literals: live.live_literals,
                 set: set.collect(),
             },
         }

@@ -12,13 +12,13 @@ use super::provenance::{Drawing, Provenance};
 pub enum Existing {
     /// There is no file.
     Missing,
-    /// The file is whole, and is what would be drawn; with its number of unproven pixels.
+    /// The file is complete and holds what would be drawn, with this number of unproven pixels.
     Finished(u64),
     /// The file is something else, for this reason.
     Other(String),
 }
 
-/// Looks at the file of a drawing that should hold pixels of this kind.
+/// Returns the state of a drawing's file, which should hold pixels of this kind.
 pub fn existing(path: &Path, drawing: &Drawing, kind: RasterKind) -> Existing {
     let file = match sdfc_files::read_picture(path) {
         Ok(file) => file,

@@ -11,7 +11,8 @@ pub enum ViewError {
     EyeIsTarget([f64; 3]),
     /// The field of view, in radians, is not between 0 and half a turn.
     #[error(
-        "the camera's field of view is {} degrees; it must lie between 0 and 180", .0.to_degrees()
+        "the camera's `fov` is {0} radians ({degrees} degrees); it must be above 0 and below pi \
+         radians (180 degrees)", degrees = .0.to_degrees()
     )]
     Fov(f64),
     /// A value is not a finite number; contains its name.

@@ -9,8 +9,6 @@ use sdfc_graph::{
 use super::error::ViewError;
 use super::values::{Bounds, finite, positive, value_of};
 
-/// Vertical field of view of a fitted camera.
-const FITTED_FOV: f64 = 40.0 * std::f64::consts::PI / 180.0;
 /// Direction from the middle of the bounds towards a fitted camera: from the right, above and in
 /// front.
 const FITTED_DIRECTION: DVec3 = DVec3::new(0.5, 0.45, 1.0);
@@ -33,6 +31,61 @@ pub struct Pose {
 }
 
 impl Pose {
+    /// Vertical field of view of a fitted camera, in radians.
+    pub const FITTED_FOV: f64 = 40.0 * std::f64::consts::PI / 180.0;
+
+    /// A camera with a vertical field of view `fov`, in radians. `up` has any length.
+    ///
+    /// # Errors
+    ///
+    /// [`ViewError::EyeIsTarget`]; [`ViewError::Fov`]: not above 0 and below pi;
+    /// [`ViewError::NotFinite`].
+    pub fn with_fov(
+        eye: [f64; 3],
+        target: [f64; 3],
+        up: [f64; 3],
+        fov: f64,
+    ) -> Result<Self, ViewError> {
+        if fov > 0.0 && fov < std::f64::consts::PI {
+            Self::checked(eye, target, up, false, (fov / 2.0).tan())
+        } else {
+            Err(ViewError::Fov(fov))
+        }
+    }
+
+    /// A camera with parallel rays, whose picture shows `height` scene units. `up` has any length.
+    ///
+    /// # Errors
+    ///
+    /// [`ViewError::EyeIsTarget`]; [`ViewError::NotPositive`]: the height is 0 or less;
+    /// [`ViewError::NotFinite`].
+    pub fn with_height(
+        eye: [f64; 3],
+        target: [f64; 3],
+        up: [f64; 3],
+        height: f64,
+    ) -> Result<Self, ViewError> {
+        Self::checked(eye, target, up, true, positive([height; 4], "the camera's height")? / 2.0)
+    }
+
+    fn checked(
+        eye: [f64; 3],
+        target: [f64; 3],
+        up: [f64; 3],
+        parallel: bool,
+        half_height: f64,
+    ) -> Result<Self, ViewError> {
+        let finite = |[x, y, z]: [f64; 3], what| finite([x, y, z, 0.0], what);
+        let eye = finite(eye, "the camera's eye")?;
+        let target = finite(target, "the camera's target")?;
+        let up = finite(up, "the camera's up")?;
+        // Also for points that are too close for a direction.
+        if (target - eye).try_normalize().is_none() {
+            return Err(ViewError::EyeIsTarget(eye.to_array()));
+        }
+        Ok(Self { eye, target, up, parallel, half_height })
+    }
+
     /// The scene's camera at a frame; without one, a camera fitted to the bounds, for a picture
     /// whose width is `aspect` times its height.
     ///
@@ -80,20 +133,15 @@ impl Pose {
 
     /// The camera that the scene states.
     fn of_camera(camera: &Camera, value: &dyn Fn(NodeId) -> [f64; 4]) -> Result<Self, ViewError> {
-        let eye = finite(value(camera.eye), "the camera's eye")?;
-        let target = finite(value(camera.target), "the camera's target")?;
-        let up = finite(value(camera.up), "the camera's up")?;
-        if (target - eye).try_normalize().is_none() {
-            return Err(ViewError::EyeIsTarget(eye.to_array()));
-        }
-        let (parallel, half_height) = match camera.lens {
-            Lens::Height(height) => (true, positive(value(height), "the camera's height")? / 2.0),
-            Lens::Fov(fov) => match value(fov)[0] {
-                fov if fov > 0.0 && fov < std::f64::consts::PI => (false, (fov / 2.0).tan()),
-                fov => return Err(ViewError::Fov(fov)),
-            },
+        let point = |id| {
+            let [x, y, z, _] = value(id);
+            [x, y, z]
         };
-        Ok(Self { eye, target, up, parallel, half_height })
+        let (eye, target, up) = (point(camera.eye), point(camera.target), point(camera.up));
+        match camera.lens {
+            Lens::Fov(fov) => Self::with_fov(eye, target, up, value(fov)[0]),
+            Lens::Height(height) => Self::with_height(eye, target, up, value(height)[0]),
+        }
     }
 
     /// A camera that sees the whole of the bounds from the right, above and in front; an unlimited
@@ -106,7 +154,7 @@ impl Pose {
     pub fn fitted_from(bounds: Option<Bounds>, aspect: f64, toward_eye: DVec3, up: DVec3) -> Self {
         let [lo, hi] = limited(bounds);
         let target = (lo + hi) / 2.0;
-        let half_height = (FITTED_FOV / 2.0).tan();
+        let half_height = (Self::FITTED_FOV / 2.0).tan();
         let toward_eye = toward_eye.normalize_or(DVec3::Z);
         let pose = Self { eye: target + toward_eye, target, up, parallel: false, half_height };
         let [x, y, z] = pose.basis();

@@ -10,7 +10,7 @@ import json
 import os
 import sys
 import threading
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import ThreadPoolExecutor, wait
 from ctypes import (
     CFUNCTYPE,
     POINTER,
@@ -105,7 +105,7 @@ lib = _load()
 
 
 def text(value: str) -> bytes:
-    """Converts a string to one of C, which cannot hold null characters."""
+    """Converts a string to a C string, which cannot hold null characters."""
     if "\0" in value:
         raise ArgumentError(f"{value!r} has a null character")
     return value.encode("utf-8", "surrogatepass")
@@ -194,7 +194,9 @@ class _Memory:
 def view(owner: Handle, address: int, shape: tuple[int, ...], dtype: str) -> np.ndarray[Any, Any]:
     """Returns a read-only array that shows memory of the library, without a copy."""
     if 0 in shape:
-        return np.empty(shape, dtype)
+        empty: np.ndarray[Any, Any] = np.empty(shape, dtype)
+        empty.setflags(write=False)
+        return empty
     return np.asarray(_Memory(owner, address, shape, dtype))
 
 
@@ -205,7 +207,7 @@ def run(
     stated: bytes,
     progress: Callable[[int, int], object] | None,
 ) -> Handle:
-    """Makes a call that takes long. An exception of ``progress``, or Ctrl-C, stops it."""
+    """Runs a long call. Ctrl-C, or an exception of ``progress``, stops it."""
     raised: list[BaseException] = []
     is_stopped = threading.Event()
 
@@ -234,6 +236,9 @@ def run(
     with ThreadPoolExecutor(1) as pool:
         future = pool.submit(work)
         try:
+            # Windows would not tell a thread that waits without a limit of Ctrl-C.
+            while not wait([future], timeout=0.1).done:
+                pass
             return future.result()
         finally:
             is_stopped.set()

@@ -21,8 +21,8 @@ class MachineError(Error):
 class CompileError(Error):
     """The source has errors.
 
-    The text is what ``sdfc check`` prints: each message with its code, its place in the source, and
-    what to write instead.
+    The text is what ``sdfc check`` prints: each message with its code, its location in the source,
+    and what to write instead.
     """
 
     diagnostics: tuple[Diagnostic, ...]
@@ -59,8 +59,8 @@ class Diagnostic:
     """Changes of the source that fix the problem: ``title``, and a list of ``edits``."""
 
     def __str__(self) -> str:
-        place = f"{self.file}:{self.line}:{self.column}"
-        return f"{place}: {self.severity}[{self.code}]: {self.message}"
+        location = f"{self.file}:{self.line}:{self.column}"
+        return f"{location}: {self.severity}[{self.code}]: {self.message}"
 
 
 def diagnostics(rows: list[dict[str, Any]]) -> tuple[Diagnostic, ...]:

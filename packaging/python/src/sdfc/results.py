@@ -19,10 +19,22 @@ from .errors import ArgumentError
 
 PathLike = Union[str, "os.PathLike[str]"]
 
+_MESHES = (".stl", ".obj", ".ply", ".glb", ".3mf")
+_CONTOURS = (".svg", ".dxf")
 
-def _format(path: PathLike) -> bytes:
+
+def _format(path: PathLike, what: str, known: tuple[str, ...]) -> bytes:
     """Returns the format of a file, by the extension of its name."""
-    return _native.text(Path(path).suffix.lower().lstrip("."))
+    extension = Path(path).suffix.lower()
+    if extension in known:
+        return extension[1:].encode()
+    *most, last = known
+    names = f"{', '.join(most)} or {last}" if most else last
+    raise ArgumentError(f"{path}: {what} are written as {names}")
+
+
+def _corners(bounds: Any) -> NDArray[np.float64] | None:
+    return None if bounds is None else np.array(bounds)
 
 
 class Mesh:
@@ -43,8 +55,8 @@ class Mesh:
     """The volume that the mesh encloses, in cubic scene units."""
     area: float
     """The area of all triangles, in square scene units."""
-    bounds: NDArray[np.float64]
-    """The lowest and the highest corner, of shape (2, 3)."""
+    bounds: NDArray[np.float64] | None
+    """The lowest and the highest corner, of shape (2, 3); None without vertices."""
     certificate: dict[str, Any]
     """The proven properties: ``error``, ``is_proven``, ``is_topology_proven``, ``undecided`` and
     more, as ``sdfc mesh --json`` writes them."""
@@ -64,7 +76,7 @@ class Mesh:
         self.triangles = rows(lib.sdfc_mesh_triangles, "u4")
         described = json.loads(lib.sdfc_mesh_describe(handle.address))
         self.volume, self.area = described["volume"], described["area"]
-        self.bounds = np.array(described["bounds"])
+        self.bounds = _corners(described["bounds"])
         self.certificate = described["certificate"]
 
     def save(self, path: PathLike) -> None:
@@ -72,7 +84,7 @@ class Mesh:
 
         Raises :class:`ArgumentError` for another extension, or if the format cannot hold the mesh.
         """
-        address = lib.sdfc_mesh_write(self._handle.address, _format(path))
+        address = lib.sdfc_mesh_write(self._handle.address, _format(path, "meshes", _MESHES))
         Path(path).write_bytes(_native.take_bytes(address))
 
     def __repr__(self) -> str:
@@ -109,8 +121,8 @@ class Contour:
     """The area of the section, in square scene units."""
     length: float
     """The length of all paths, in scene units."""
-    bounds: NDArray[np.float64]
-    """The lowest and the highest corner in the plane, of shape (2, 2)."""
+    bounds: NDArray[np.float64] | None
+    """The lowest and the highest corner in the plane, of shape (2, 2); None without paths."""
     certificate: dict[str, Any]
     """The proven properties, as ``sdfc contour --json`` writes them."""
 
@@ -123,7 +135,7 @@ class Contour:
         ]
         self.origin, self.axes = np.array(described["origin"]), np.array(described["axes"])
         self.area, self.length = described["area"], described["length"]
-        self.bounds = np.array(described["bounds"])
+        self.bounds = _corners(described["bounds"])
         self.certificate = described["certificate"]
 
     def save(self, path: PathLike) -> None:
@@ -131,7 +143,7 @@ class Contour:
 
         Raises :class:`ArgumentError` for another extension.
         """
-        address = lib.sdfc_contour_write(self._handle.address, _format(path))
+        address = lib.sdfc_contour_write(self._handle.address, _format(path, "contours", _CONTOURS))
         Path(path).write_bytes(_native.take_bytes(address))
 
     def __repr__(self) -> str:
@@ -224,8 +236,7 @@ class Picture:
 
         Raises :class:`ArgumentError` if the name does not end in .png.
         """
-        if _format(path) != b"png":
-            raise ArgumentError(f"{path}: pictures are written as .png")
+        _format(path, "pictures", (".png",))
         Path(path).write_bytes(self.png())
 
     def _repr_png_(self) -> bytes:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import numbers
 import os
@@ -37,11 +38,17 @@ Files = Union[Mapping[str, Union[str, bytes]], Callable[[str], Union[str, bytes]
 ``KeyError`` or ``OSError`` if there is no such file."""
 
 Progress = Callable[[int, int], object]
-"""Is called with the units of work that are done and those that are known, of the current step, in
-a thread of its own. An exception that it raises stops the work, and so does Ctrl-C."""
+"""A function that receives the number of finished units and the number of known units of the
+current step. It runs in another thread if the call comes from the main thread. If it raises an
+exception, the work stops."""
 
 # Points that one thread evaluates at once. Fewer points take less time than starting a thread.
 _CHUNK = 1 << 15
+
+# The largest file that is read, in bytes, and the greatest group and binding of a shader: the
+# limits of the command line.
+_MAX_BYTES = 64 << 20
+_MAX_BINDING = 65_535
 
 
 @dataclass(frozen=True)
@@ -144,14 +151,30 @@ def load(path: PathLike, *, values: Mapping[str, Value] | None = None) -> Scene:
     """Reads a file and compiles it, with the files below its folder that it imports.
 
     ``values`` and exceptions are those of :func:`compile`. Raises ``OSError`` if the file cannot
-    be read.
+    be read or is larger than 64 MiB. Imports cannot follow links out of the folder.
     """
     path = Path(path)
+    folder = path.parent.resolve()
 
     def read(below: str) -> bytes:
-        return (path.parent / below).read_bytes()
+        file = (folder / below).resolve()
+        if folder not in file.parents:
+            raise PermissionError(f"{below} is outside the folder of the scene")
+        return _content(file)
 
-    return compile(path.read_text("utf-8"), name=str(path), files=read, values=values)
+    # A byte that is not UTF-8 becomes a surrogate, which `compile` refuses.
+    source = _content(path).decode("utf-8", "surrogateescape")
+    name = str(path).encode("utf-8", "replace").decode()
+    return compile(source, name=name, files=read, values=values)
+
+
+def _content(path: Path) -> bytes:
+    """Reads a file that is at most as large as those that the command line reads."""
+    with path.open("rb") as file:
+        content = file.read(_MAX_BYTES + 1)
+    if len(content) > _MAX_BYTES:
+        raise OSError(errno.EFBIG, f"it is larger than {_MAX_BYTES >> 20} MiB", str(path))
+    return content
 
 
 def _text(value: Value) -> str:
@@ -216,7 +239,8 @@ class Scene:
         by default. Params that are not named keep their values. Nothing is compiled.
 
         Raises :class:`ArgumentError` if there is no such param, if it does not take the value, or
-        if it decides what the scene consists of: pass those to :func:`compile`.
+        if it decides what the scene consists of: pass those to :func:`compile`. Also raised if
+        ``time`` is not finite or ``frame`` is no integer.
         """
         address = lib.sdfc_scene_copy(self._handle.address)
         scene = Scene(Handle(address, lib.sdfc_scene_free), self.warnings)
@@ -287,7 +311,7 @@ class Scene:
         gigabytes of memory.
 
         Raises :class:`Error` if the scene has no limit or no inside, and :class:`ArgumentError` if
-        the error is too small.
+        the error is too small, or greater than the longest side of the scene's bounds.
         """
         stated = _native.options(error=error, error_relative=relative, max_cells=max_cells)
         call, free = lib.sdfc_mesh_make, lib.sdfc_mesh_free
@@ -393,8 +417,14 @@ class Scene:
         ``shadertoy``; ``part`` is ``field``, ``march`` or ``render``. Names in the source begin
         with ``prefix``, and the first buffer has the index ``binding`` in ``group``.
 
-        Raises :class:`ArgumentError` for another target or part.
+        ``group`` and ``binding`` are at most 65535.
+
+        Raises :class:`ArgumentError` for another target, part, group or binding.
         """
+        for what, number in (("group", group), ("binding", binding)):
+            # ctypes would take the lowest 32 bits.
+            if not 0 <= number <= _MAX_BINDING:
+                raise ArgumentError(f"`{what}` is {number}; it must be 0 to {_MAX_BINDING}")
         address = lib.sdfc_shader_write(
             self._handle.address,
             _native.text(target),
