@@ -27,6 +27,7 @@ pub mod app;
 pub mod compile;
 pub mod examples;
 pub mod export;
+mod json_file;
 pub mod language;
 pub mod latest_channel;
 pub mod render;

@@ -1,8 +1,9 @@
 //! `sdfc-view FILE`: shows a scene in a window.
 //!
 //! Exit codes: 0, the window was closed; 2, invalid command line or unreadable file; 3, no window
-//! could be opened or its device was lost.
+//! could be opened, its device was lost, or stdout cannot be written.
 
+use std::io::{ErrorKind, Write, stdout};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -22,7 +23,7 @@ const NO_WINDOW: &str = "a window needs a display and a driver for Vulkan, Metal
 /// The example that is shown if no file is named. It has params to drag.
 const FIRST_EXAMPLE: &str = "params";
 
-#[allow(clippy::print_stdout, clippy::print_stderr, reason = "a program prints messages")]
+#[allow(clippy::print_stderr, reason = "a program prints messages")]
 fn main() -> ExitCode {
     let arguments: Vec<_> = std::env::args_os().skip(1).collect();
     let argument = match &arguments[..] {
@@ -34,13 +35,9 @@ fn main() -> ExitCode {
         }
     };
     match argument.to_str() {
-        Some("-h" | "--help") => {
-            println!("{USAGE}");
-            return ExitCode::SUCCESS;
-        }
+        Some("-h" | "--help") => return print(USAGE),
         Some("-V" | "--version") => {
-            println!("sdfc-view {}", env!("CARGO_PKG_VERSION"));
-            return ExitCode::SUCCESS;
+            return print(concat!("sdfc-view ", env!("CARGO_PKG_VERSION")));
         }
         Some(_) | None => {}
     }
@@ -57,6 +54,19 @@ fn main() -> ExitCode {
         return ExitCode::from(2);
     }
     window(&path)
+}
+
+/// Writes a line to stdout. A closed pipe is not an error: the reader has seen enough.
+#[allow(clippy::print_stderr, reason = "a program prints messages")]
+fn print(text: &str) -> ExitCode {
+    let mut out = stdout().lock();
+    match writeln!(out, "{text}").and_then(|()| out.flush()) {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
+            eprintln!("error: cannot write to stdout: {error}");
+            ExitCode::from(3)
+        }
+        _ => ExitCode::SUCCESS,
+    }
 }
 
 /// True if there is no such file, but the folder of a file with the ending of a scene.

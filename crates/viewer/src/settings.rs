@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
+use crate::json_file;
 use crate::session::orbit_camera::CameraState;
 
 /// The most scenes that are stored.
@@ -41,17 +42,12 @@ pub struct SceneSettings {
 impl Settings {
     /// Reads a settings file. A missing or invalid file gives the defaults.
     pub fn read(path: &Path) -> Self {
-        let small = std::fs::metadata(path).is_ok_and(|found| found.len() <= MAX_BYTES);
-        let text = small.then(|| std::fs::read_to_string(path).ok()).flatten();
-        text.and_then(|text| serde_json::from_str(&text).ok()).unwrap_or_default()
+        json_file::read(path, MAX_BYTES)
     }
 
     /// Writes a settings file. Errors are ignored: the settings are then lost.
     pub fn write(&self, path: &Path) {
-        if let (Some(folder), Ok(text)) = (path.parent(), serde_json::to_string_pretty(self)) {
-            let _ = std::fs::create_dir_all(folder);
-            let _ = sdfc_files::write(path, text.as_bytes());
-        }
+        json_file::write(path, self);
     }
 
     /// The stored settings of a scene.

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
+use crate::json_file;
 use crate::settings::absolute;
 
 /// The most scenes whose texts are stored.
@@ -66,19 +67,13 @@ impl UnsavedTexts {
             scenes.insert(0, UnsavedScene { path, ..unsaved });
         }
         scenes.truncate(MAX_SCENES);
-        if scenes == before {
-            return;
-        }
-        if let (Some(folder), Ok(text)) = (self.0.parent(), serde_json::to_string(&scenes)) {
-            let _ = std::fs::create_dir_all(folder);
-            let _ = sdfc_files::write(&self.0, text.as_bytes());
+        if scenes != before {
+            json_file::write(&self.0, &scenes);
         }
     }
 
     fn read(&self) -> Vec<UnsavedScene> {
-        let small = std::fs::metadata(&self.0).is_ok_and(|found| found.len() <= MAX_BYTES);
-        let text = small.then(|| std::fs::read_to_string(&self.0).ok()).flatten();
-        text.and_then(|text| serde_json::from_str(&text).ok()).unwrap_or_default()
+        json_file::read(&self.0, MAX_BYTES)
     }
 }
 

@@ -2,7 +2,7 @@
 //! square that is dragged in the plane of the picture.
 
 use eframe::egui::{
-    self, Color32, CursorIcon, Id, Pos2, Rect, Sense, Shape, Stroke, Ui, Vec2, vec2,
+    self, Color32, CursorIcon, Id, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, Vec2, vec2,
 };
 use glam::{DMat3, DVec3};
 use sdfc_render::Pose;
@@ -20,17 +20,42 @@ const GRIP: f32 = 14.0;
 /// length.
 const MIN_SEEN: f64 = 0.1;
 
-/// The drag of a handle: the values and the pointer when it began.
+/// The handles in the picture, and the drag of one.
 #[derive(Debug, Default)]
 pub struct HandleOverlay {
-    start: Option<Dragged>,
+    drag: Option<Drag>,
 }
 
+/// A drag of a handle.
 #[derive(Debug)]
-struct Dragged {
-    handles: Vec<ValueHandle>,
+struct Drag {
+    changes: Vec<Change>,
     /// The total drag in points.
     by: Vec2,
+}
+
+/// How a drag changes a value. This stays as it was when the drag began: in perspective, the arrow
+/// of a value has another direction and another scale for each value.
+#[derive(Debug)]
+struct Change {
+    start: ValueHandle,
+    /// The change of the value per point to the right and down.
+    per_point: [f64; 2],
+    /// The change of the value that is a point in the picture.
+    resolution: f64,
+}
+
+impl Change {
+    /// The value after a drag. It has no digits for less than a point in the unit of its text.
+    fn value(&self, by: Vec2) -> f64 {
+        let ValueHandle { number, unit, .. } = &self.start;
+        let [right, down] = self.per_point;
+        let change = right * f64::from(by.x) + down * f64::from(by.y);
+        if change.abs() < self.resolution / 2.0 {
+            return *number;
+        }
+        unit.value(rounded(unit.number(number + change), unit.number(self.resolution)))
+    }
 }
 
 impl HandleOverlay {
@@ -49,22 +74,11 @@ impl HandleOverlay {
             };
             let response = grip(ui, rect, arrow.tip(), index, "Drag to change the value.");
             arrow.paint(ui, rect, color, response.hovered() || response.dragged());
-            if response.drag_started() {
-                self.start = Some(Dragged { handles: handles.clone(), by: Vec2::ZERO });
-            }
-            if let Some(dragged) = self.start.as_mut().filter(|_| response.dragged()) {
-                is_dragged = true;
-                dragged.by += response.drag_delta();
-                if let Some(start) = dragged.handles.get(index) {
-                    let by = f64::from(dragged.by.dot(arrow.direction)) * arrow.value_per_point;
-                    let value = rounded(start.number + by, arrow.value_per_point);
-                    session.set_value(&start.value, value);
-                }
-            }
+            is_dragged |= self.drag(&response, session, || vec![arrow.change(handle)]);
         }
         is_dragged |= self.plane_handle(ui, [rect, shown], &pose, &handles, session);
         if !is_dragged {
-            self.start = None;
+            self.drag = None;
         }
         session.handles.is_dragged = is_dragged;
     }
@@ -93,26 +107,43 @@ impl HandleOverlay {
         let fill = if response.hovered() { color } else { color.gamma_multiply(0.4) };
         let painter = ui.painter().with_clip_rect(rect);
         painter.rect(square, 2.0, fill, Stroke::new(1.5, color), egui::StrokeKind::Middle);
-        if response.drag_started() {
-            self.start = Some(Dragged { handles: handles.to_vec(), by: Vec2::ZERO });
-        }
-        let Some(dragged) = self.start.as_mut().filter(|_| response.dragged()) else {
-            return false;
+        let changes = || {
+            let resolution = units_per_point(pose, shown, origin);
+            let [right, up, _] = pose.basis();
+            let [right, down] =
+                [right, -up].map(|side| (motions.inverse() * (side * resolution)).to_array());
+            let per_point = right.into_iter().zip(down).map(|(right, down)| [right, down]);
+            let change = |(start, per_point): (&ValueHandle, [f64; 2])| Change {
+                start: start.clone(),
+                per_point,
+                resolution,
+            };
+            handles.iter().zip(per_point).map(change).collect()
         };
-        dragged.by += response.drag_delta();
-        let unit = units_per_point(pose, shown, origin);
-        let [right, up, _] = pose.basis();
-        let by = right * f64::from(dragged.by.x) - up * f64::from(dragged.by.y);
-        let changes = motions.inverse() * (by * unit);
-        for (start, change) in dragged.handles.iter().zip(changes.to_array()) {
-            session.set_value(&start.value, rounded(start.number + change, unit));
+        self.drag(&response, session, changes)
+    }
+
+    /// Changes values by the drag of a grip. Returns true while it is dragged.
+    fn drag(
+        &mut self,
+        response: &Response,
+        session: &mut Session,
+        changes: impl FnOnce() -> Vec<Change>,
+    ) -> bool {
+        if response.drag_started() {
+            self.drag = Some(Drag { changes: changes(), by: Vec2::ZERO });
+        }
+        let Some(drag) = self.drag.as_mut().filter(|_| response.dragged()) else { return false };
+        drag.by += response.drag_delta();
+        for change in &drag.changes {
+            session.set_value(&change.start.value, change.value(drag.by));
         }
         true
     }
 }
 
 /// The space that reacts to the pointer at a point of the picture.
-fn grip(ui: &Ui, rect: Rect, at: Pos2, index: usize, help: &str) -> egui::Response {
+fn grip(ui: &Ui, rect: Rect, at: Pos2, index: usize, help: &str) -> Response {
     let space = Rect::from_center_size(at, Vec2::splat(GRIP)).intersect(rect);
     let response = ui.interact(space, Id::unique(("value handle", index)), Sense::drag());
     response.on_hover_cursor(CursorIcon::Grab).on_hover_text(help)
@@ -138,6 +169,13 @@ impl Arrow {
             false => ((to - from).normalized(), seen),
         };
         Some(Self { from, direction, value_per_point: unit / seen / speed })
+    }
+
+    /// How a drag changes the value of this arrow.
+    fn change(&self, start: &ValueHandle) -> Change {
+        let Vec2 { x, y } = self.direction;
+        let per_point = [x, y].map(|side| f64::from(side) * self.value_per_point);
+        Change { start: start.clone(), per_point, resolution: self.value_per_point }
     }
 
     fn tip(&self) -> Pos2 {
@@ -169,4 +207,38 @@ fn rounded(value: f64, per_point: f64) -> f64 {
     let digits = -per_point.abs().max(1e-12).log10().floor();
     let unit = 10f64.powf(digits.clamp(0.0, 12.0));
     (value * unit).round() / unit
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::render::handles::Handle;
+    use crate::scene::handle_values::HandleValue;
+    use crate::scene::number_text::{Unit, angle_text};
+
+    /// The text of an angle in a unit after a drag that changes it by 0.37° per point.
+    fn dragged(start: f64, suffix: &str, by: f32) -> String {
+        let unit = Unit::of(suffix);
+        let handle = Handle { origin: DVec3::ZERO, motion: DVec3::X, is_translation: true };
+        let value = HandleValue::Number(0);
+        let start = ValueHandle { value, number: unit.value(start), unit, handle };
+        let resolution = 0.37f64.to_radians();
+        let change = Change { start, per_point: [resolution, 0.0], resolution };
+        angle_text(change.value(vec2(by, 0.0)), suffix)
+    }
+
+    #[test]
+    fn a_dragged_angle_has_short_text_in_its_unit() {
+        assert_eq!(
+            [dragged(30.0, "deg", 7.0), dragged(-30.0, "deg", 7.0)],
+            ["32.6deg", "-27.4deg"]
+        );
+        assert_eq!(dragged(0.25, "turn", -7.0), "0.243turn");
+        for by in 1..200 {
+            let text = dragged(30.0, "deg", by as f32);
+            assert!(text.len() <= "-12.3deg".len(), "{text}");
+        }
+        // Less than half a point changes nothing.
+        assert_eq!(dragged(30.123_456, "deg", 0.4), "30.123456deg");
+    }
 }

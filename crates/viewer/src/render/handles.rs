@@ -11,9 +11,9 @@ use std::sync::Arc;
 use std::sync::mpsc::Sender;
 
 use glam::{DMat3, DVec3};
-use sdfc_render::{HIT, Image, View};
 
 use crate::render::picture::{Picture, RenderRequest};
+use crate::render::surface_points::{SurfacePoints, stride};
 use crate::scene::field_probe::IsInterrupted;
 use crate::scene::handle_values::LiveParam;
 use crate::worker_thread::WorkerThread;
@@ -34,23 +34,29 @@ const REGULARISATION: f64 = 1e-6;
 /// A question about a picture.
 #[derive(Clone, Debug)]
 pub struct HandleRequest {
-    /// The request that the picture answers.
-    pub request: Arc<RenderRequest>,
-    image: Arc<Image>,
-    view: View,
+    surface: SurfacePoints,
     params: Vec<LiveParam>,
+    /// The values in the picture, in the order of the params.
+    pub start: Vec<f64>,
 }
 
 impl HandleRequest {
     /// A question about the surface in a picture.
     pub fn new(picture: &Picture, params: Vec<LiveParam>) -> Self {
-        let (request, image) = (Arc::clone(&picture.request), Arc::clone(&picture.image));
-        Self { request, image, view: picture.view.clone(), params }
+        let lanes = &picture.request.frame.params;
+        let value = |param: &LiveParam| lanes.get(param.index).map_or(0.0, |it| it[0]) * param.sign;
+        let start = params.iter().map(value).collect();
+        Self { surface: SurfacePoints::new(picture), params, start }
+    }
+
+    /// The request that the picture answers.
+    pub fn request(&self) -> &RenderRequest {
+        &self.surface.request
     }
 
     /// Returns true if both ask the same.
     pub fn is_same(&self, other: &Self) -> bool {
-        self.params == other.params && Arc::ptr_eq(&self.image, &other.image)
+        self.has_same_params(other) && self.surface.is_same(&other.surface)
     }
 
     /// Returns true if both are about the same values.
@@ -60,19 +66,11 @@ impl HandleRequest {
 
     /// Points of the surface, and the direction of their rays.
     fn points(&self) -> Vec<[DVec3; 2]> {
-        let [width, height] = self.image.size();
-        let mut stride = 1;
-        while width.div_ceil(stride).saturating_mul(height.div_ceil(stride)) > MAX_POINTS {
-            stride += 1;
-        }
-        let point = |(x, y): (u32, u32)| {
-            let pixel = self.image.pixel(x, y)?;
-            let [start, direction] = self.view.ray(x, y);
-            let is_hit = pixel.status == HIT && pixel.depth.is_finite();
-            is_hit.then(|| [start + direction * f64::from(pixel.depth), direction])
-        };
+        let [width, height] = self.surface.size();
+        let stride = stride([width, height], MAX_POINTS);
         let columns = |y| (stride / 2..width).step_by(stride as usize).map(move |x| (x, y));
-        (stride / 2..height).step_by(stride as usize).flat_map(columns).filter_map(point).collect()
+        let pixels = (stride / 2..height).step_by(stride as usize).flat_map(columns);
+        pixels.filter_map(|(x, y)| self.surface.point(x, y)).collect()
     }
 }
 
@@ -119,7 +117,7 @@ fn handle_of(
     points: &[[DVec3; 2]],
     interrupted: IsInterrupted<'_>,
 ) -> Option<Handle> {
-    let RenderRequest { model, frame, .. } = &*request.request;
+    let RenderRequest { model, frame, .. } = request.request();
     let value = frame.params.get(param.index)?[0];
     let step = STEP * value.abs().max(1.0);
     let positions: Vec<Option<[f64; 3]>> =
@@ -177,7 +175,7 @@ fn along_normal(moving: &[Moving]) -> Option<Handle> {
     Some(Handle { origin: best.point, motion, is_translation: false })
 }
 
-/// A handle to the thread that finds handles; dropping it ends the thread.
+/// The thread that finds handles; dropping this ends it.
 #[derive(Debug)]
 pub struct HandleWorker(WorkerThread<HandleRequest>);
 
@@ -238,7 +236,7 @@ mod tests {
         assert_eq!(translation(&grown), None);
         let handle = along_normal(&grown).unwrap();
         assert!(handle.motion.abs_diff_eq(handle.origin, 1e-12), "{handle:?}");
-        // Of a side that is seen from the front, only the motion towards the eye is known.
+        // If only one side is seen, from the front, the fit finds only the motion towards the eye.
         let side: Vec<Moving> = (0..9).map(|_| moving(DVec3::Z, 2.0)).collect();
         let handle = translation(&side).unwrap();
         assert!(handle.motion.abs_diff_eq(2.0 * DVec3::Z, 1e-4), "{handle:?}");

@@ -5,5 +5,6 @@ pub mod pacing;
 pub mod picture;
 pub mod pixel_info;
 pub mod shape_mask;
+pub mod surface_points;
 pub mod view_painter;
 pub mod worker;

@@ -5,6 +5,7 @@
 
 use sdfc_render::{Image, RenderError};
 
+use crate::render::surface_points;
 use crate::views::input::{ViewInput, rendered_position};
 use crate::views::legend::Legend;
 use crate::views::mode::ViewMode;
@@ -27,16 +28,10 @@ pub struct ColoredView {
 
 /// The stride of the first picture of an image: a power of two. The shaded view needs no field.
 pub fn first_stride(mode: ViewMode, size: [u32; 2]) -> u32 {
-    let mut stride = 1;
-    while mode != ViewMode::Shaded && pixels(size, stride) > FIRST_PIXELS {
-        stride *= 2;
+    if mode == ViewMode::Shaded {
+        return 1;
     }
-    stride
-}
-
-fn pixels(size: [u32; 2], stride: u32) -> u32 {
-    let [width, height] = reduced(size, stride);
-    width.saturating_mul(height)
+    surface_points::stride(size, FIRST_PIXELS).next_power_of_two()
 }
 
 fn reduced(size: [u32; 2], stride: u32) -> [u32; 2] {

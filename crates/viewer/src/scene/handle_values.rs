@@ -1,10 +1,15 @@
 //! The values that a handle in the picture changes: a param, a number, or a vector of three.
 
+use std::ops::Range;
+
 use sdfc_graph::ParamKind;
-use sdfc_syntax::{Class, classes};
+use sdfc_ide::{TokenRole, TokenSpan};
+use sdfc_syntax::Class;
 
 use crate::scene::model::Model;
+use crate::scene::number_text::Unit;
 use crate::scene::param_values::ParamValues;
+use crate::scene::source_numbers::{SourceNumber, Token, tokens};
 
 /// The most tokens between the brackets of a vector: three signs, three values, two commas.
 const MAX_INSIDE: usize = 8;
@@ -56,6 +61,19 @@ impl HandleValue {
         }
     }
 
+    /// The unit in which the scene's text has the value when it is saved.
+    pub fn unit(&self, model: &Model) -> Unit {
+        match self {
+            Self::Param(name) => {
+                let mut declared = model.declared().iter();
+                let param = declared.find(|param| param.name == *name);
+                let is_angle = param.is_some_and(|param| param.kind == ParamKind::Angle);
+                if is_angle { Unit::Degrees } else { Unit::One }
+            }
+            Self::Number(start) => model.number_at(*start).map_or(Unit::One, SourceNumber::unit),
+        }
+    }
+
     /// Changes the value, within its range.
     pub fn set(&self, model: &Model, values: &mut ParamValues, value: f64) {
         let clamped = |range: Option<[f64; 2]>| match range {
@@ -80,16 +98,18 @@ impl HandleValue {
 }
 
 /// The values at an offset of the scene's text: those of the vector `[x, y, z]` around it if each
-/// is a param or a number, else the param or the number there.
-pub fn values_at(model: &Model, offset: usize) -> Vec<HandleValue> {
+/// is a param or a number, else the param or the number there. `roles` are those of the text.
+pub fn values_at(model: &Model, roles: &[TokenSpan], offset: usize) -> Vec<HandleValue> {
     let text = model.source.as_str();
-    let mut tokens = classes(text);
-    tokens.retain(|(class, _)| !matches!(class, Class::Comment | Class::Docs));
-    let value = |(class, range): &(Class, std::ops::Range<usize>)| {
+    let tokens = tokens(text);
+    let value = |(class, range): &Token| {
         let value = match class {
             Class::Number => HandleValue::Number(range.start),
-            Class::Name => HandleValue::Param(text.get(range.clone())?.to_owned()),
-            Class::Comment
+            Class::Name if is_param(roles, range) => {
+                HandleValue::Param(text.get(range.clone())?.to_owned())
+            }
+            Class::Name
+            | Class::Comment
             | Class::Docs
             | Class::Keyword
             | Class::Color
@@ -102,30 +122,77 @@ pub fn values_at(model: &Model, offset: usize) -> Vec<HandleValue> {
         };
         value.live_param(model).map(|_| value)
     };
-    let before = tokens.partition_point(|(_, range)| range.end <= offset);
-    let word = |index: usize| tokens.get(index).map_or("", |(_, range)| &text[range.clone()]);
-    // `[-1, -2, -3]` has the most tokens.
-    let open =
-        (before.saturating_sub(MAX_INSIDE + 1)..=before).rev().find(|index| word(*index) == "[");
-    if let Some(open) = open {
-        let close = (open..=open + MAX_INSIDE + 1).find(|index| word(*index) == "]");
-        let inside = close.and_then(|close| tokens.get(open + 1..close));
-        let is_around =
-            close.and_then(|close| tokens.get(close)).is_some_and(|it| it.1.end >= offset);
-        let elements = inside.filter(|_| is_around).into_iter().flatten();
-        let elements: Vec<HandleValue> = elements.filter_map(value).collect();
-        if elements.len() == 3 {
-            return elements;
-        }
+    if let Some([x, y, z]) = vector_around(text, &tokens, offset)
+        && let (Some(x), Some(y), Some(z)) = (value(x), value(y), value(z))
+    {
+        return vec![x, y, z];
     }
     let near = tokens.iter().filter(|(_, range)| (range.start..=range.end).contains(&offset));
     near.filter_map(value).take(1).collect()
 }
 
+/// True if a name is that of a param. A label, a component or a variable can have the same name.
+fn is_param(roles: &[TokenSpan], name: &Range<usize>) -> bool {
+    let at = roles.binary_search_by_key(&name.start, |token| token.range.start);
+    at.ok().and_then(|at| roles.get(at)).is_some_and(|token| token.role == TokenRole::Param)
+}
+
+/// The elements of the vector around an offset if it has three, each one token or a minus and one
+/// token.
+fn vector_around<'a>(text: &str, tokens: &'a [Token], offset: usize) -> Option<[&'a Token; 3]> {
+    let word = |token: &Token| text.get(token.1.clone()).unwrap_or_default();
+    let before = tokens.partition_point(|(_, range)| range.end <= offset);
+    let first = before.saturating_sub(MAX_INSIDE + 1);
+    let open = (first..=before).rev().find(|at| tokens.get(*at).is_some_and(|it| word(it) == "["));
+    let inside = tokens.get(open? + 1..)?;
+    let length = inside.iter().take(MAX_INSIDE + 1).position(|token| word(token) == "]")?;
+    inside.get(length).filter(|(_, close)| close.end >= offset)?;
+    let mut elements = inside.get(..length)?.split(|token| word(token) == ",");
+    let mut element = || match elements.next()? {
+        [value] => Some(value),
+        [minus, value] if word(minus) == "-" => Some(value),
+        _ => None,
+    };
+    let vector = [element()?, element()?, element()?];
+    elements.next().is_none().then_some(vector)
+}
+
 #[cfg(test)]
 mod tests {
+    use sdfc_ide::{Analysis, NoFiles};
+
     use super::*;
     use crate::test_support::model;
+
+    /// The values at the first position of a text in the scene.
+    fn at(model: &Model, found: &str) -> Vec<HandleValue> {
+        let analysis = Analysis::new("a.sdf", &model.source, &NoFiles);
+        values_at(model, &sdfc_ide::tokens(&analysis), model.source.find(found).unwrap())
+    }
+
+    #[test]
+    fn only_three_values_between_commas_are_a_vector() {
+        let text = "let p = [4, 5, 6]\nparam x = 1.5\nparam r = 1\n\
+                    box([2 * r, 7, 1]).translate([p.x, 8, 9])\n\
+                    sphere(r).translate([1 - 2, 3, 10]).translate([0.75, r, - 0.9])\n";
+        let model = model(text);
+        let count = |found: &str| at(&model, found).len();
+        assert_eq!([count("[2 *"), count("r, 7"), count("7, 1")], [0, 1, 1]);
+        assert_eq!([count("8, 9"), count("1 - 2"), count("3, 10"), count("0.75")], [1, 1, 1, 3]);
+    }
+
+    #[test]
+    fn a_name_is_a_value_only_where_it_means_the_param() {
+        let text = "param y = 0.5\nparam i = 2\nlet p = [1, 2, 3]\n\
+                    sphere(p.y).rotate(y: 30deg).translate(x: y)\n\
+                    union(for i in 0..3: sphere(0.1).translate(z: i / 3))\nsphere(i)\n";
+        let model = model(text);
+        let param = |name: &str| vec![HandleValue::Param(name.to_owned())];
+        assert_eq!([at(&model, "y = "), at(&model, "y)\nunion")], [param("y"), param("y")]);
+        assert_eq!([at(&model, "y)."), at(&model, "y: 30")], [vec![], vec![]]);
+        assert_eq!([at(&model, "i / 3"), at(&model, "i in")], [vec![], vec![]]);
+        assert_eq!(at(&model, "i)\n"), param("i"));
+    }
 
     #[test]
     fn a_vector_of_three_values_is_changed_by_one_handle() {
@@ -133,7 +200,7 @@ mod tests {
                     sphere(r).translate([-0.25, r, 3]).rotate(y: 30deg)\n\
                     union(for i in 0..n: box(0.1).translate(x: i))\n";
         let model = model(text);
-        let at = |found: &str| values_at(&model, text.find(found).unwrap());
+        let at = |found: &str| at(&model, found);
         let number = |found: &str| HandleValue::Number(text.find(found).unwrap());
         let param = HandleValue::Param("r".to_owned());
         let vector = [number("0.25"), param.clone(), number("3])")];

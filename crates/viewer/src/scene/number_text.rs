@@ -33,19 +33,60 @@ pub fn display_text(value: f64) -> String {
     number_text(text.parse().unwrap_or(value))
 }
 
-/// The shortest text in `unit` that parses to this angle.
-pub fn angle_text(radians: f64, unit: &str) -> String {
-    let [half, turns] = match unit {
-        "deg" => [180.0, 1.0],
-        "turn" => [1.0, 2.0],
-        _ => return format!("{}{unit}", number_text(radians)),
-    };
-    // The compiler computes it in this order, which decides the last digit.
-    let parsed = |number: f64| number * (PI * turns) / half;
-    let near = radians * half / (PI * turns);
+/// The unit in which a text writes a number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unit {
+    /// The number is the value.
+    One,
+    /// `deg` behind the number.
+    Degrees,
+    /// `turn` behind the number.
+    Turns,
+}
+
+impl Unit {
+    /// The unit that a text has behind its number.
+    pub fn of(suffix: &str) -> Self {
+        match suffix {
+            "deg" => Self::Degrees,
+            "turn" => Self::Turns,
+            _ => Self::One,
+        }
+    }
+
+    /// The value of a number in this unit.
+    pub fn value(self, number: f64) -> f64 {
+        // The compiler computes it in this order, which decides the last digit.
+        self.in_half_turns()
+            .map_or(number, |[number_of, half_turns]| number * (PI * half_turns) / number_of)
+    }
+
+    /// The number in this unit that is nearest to a value.
+    pub fn number(self, value: f64) -> f64 {
+        self.in_half_turns()
+            .map_or(value, |[number_of, half_turns]| value * number_of / (PI * half_turns))
+    }
+
+    /// A number in this unit, and the half turns that it is.
+    fn in_half_turns(self) -> Option<[f64; 2]> {
+        match self {
+            Self::One => None,
+            Self::Degrees => Some([180.0, 1.0]),
+            Self::Turns => Some([1.0, 2.0]),
+        }
+    }
+}
+
+/// The shortest text in a unit, such as `deg`, that parses to this angle.
+pub fn angle_text(radians: f64, suffix: &str) -> String {
+    let unit = Unit::of(suffix);
+    if unit == Unit::One {
+        return format!("{}{suffix}", number_text(radians));
+    }
+    let near = unit.number(radians);
     let rounded = |digits: usize| format!("{near:.digits$e}").parse::<f64>().ok();
-    let exact = (0..17).filter_map(rounded).find(|number| parsed(*number) == radians);
-    format!("{}{unit}", number_text(exact.unwrap_or(near)))
+    let exact = (0..17).filter_map(rounded).find(|number| unit.value(*number) == radians);
+    format!("{}{suffix}", number_text(exact.unwrap_or(near)))
 }
 
 #[cfg(test)]

@@ -10,7 +10,7 @@ use sdfc_graph::{Param, ParamKind};
 use sdfc_lang::live_literals::LiveLiteral;
 use sdfc_syntax::{Class, classes};
 
-use crate::scene::number_text::{angle_text, number_text};
+use crate::scene::number_text::{Unit, angle_text, number_text};
 
 /// A number of a source, with its sign.
 #[derive(Clone, Debug, PartialEq)]
@@ -54,10 +54,18 @@ impl SourceNumber {
 
     /// The text that replaces [`written`](Self::written), in the unit of the literal.
     pub fn text_of(&self, number: f64) -> String {
-        let number_part = |c: char| c.is_ascii_digit() || ".eE_+- ".contains(c);
-        let unit = self.text.trim_start_matches(number_part);
-        let text = if unit.is_empty() { number_text(number) } else { angle_text(number, unit) };
+        let suffix = self.suffix();
+        let text = if suffix.is_empty() { number_text(number) } else { angle_text(number, suffix) };
         if text.starts_with('-') && self.wants_parentheses { format!("({text})") } else { text }
+    }
+
+    /// The unit of the literal.
+    pub fn unit(&self) -> Unit {
+        Unit::of(self.suffix())
+    }
+
+    fn suffix(&self) -> &str {
+        self.text.trim_start_matches(|c: char| c.is_ascii_digit() || ".eE_+- ".contains(c))
     }
 }
 
@@ -139,10 +147,10 @@ pub fn source_numbers<'a>(
     numbers
 }
 
-type Token = (Class, Range<usize>);
+pub(super) type Token = (Class, Range<usize>);
 
 /// The tokens of a source without its comments.
-fn tokens(source: &str) -> Vec<Token> {
+pub(super) fn tokens(source: &str) -> Vec<Token> {
     let mut tokens = classes(source);
     tokens.retain(|(class, _)| !matches!(class, Class::Comment | Class::Docs));
     tokens

@@ -4,6 +4,7 @@ use std::sync::mpsc::Receiver;
 
 use crate::render::handles::{Handle, HandleRequest, HandleWorker, Handles};
 use crate::scene::handle_values::HandleValue;
+use crate::scene::number_text::Unit;
 
 /// The selected values, and their handles.
 #[derive(Debug)]
@@ -19,8 +20,6 @@ pub struct ValueHandles {
     pub(super) asked: Option<HandleRequest>,
     pub(super) answer: Option<Handles>,
     pub(super) values: Vec<HandleValue>,
-    /// The values when the handles were asked for.
-    pub(super) start: Vec<f64>,
     /// The position and the model that the values were looked up for.
     pub(super) looked_at: Option<(usize, u64)>,
     pub(super) at_cursor: Vec<HandleValue>,
@@ -38,7 +37,6 @@ impl ValueHandles {
             asked: None,
             answer: None,
             values: Vec::new(),
-            start: Vec::new(),
             looked_at: None,
             at_cursor: Vec::new(),
         }
@@ -59,6 +57,8 @@ pub struct ValueHandle {
     pub value: HandleValue,
     /// The current number.
     pub number: f64,
+    /// The unit in which a text has it.
+    pub unit: Unit,
     /// The handle where it is for that number.
     pub handle: Handle,
 }

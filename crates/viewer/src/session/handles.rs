@@ -21,13 +21,22 @@ impl Session {
         let is_scene = *model.source == **self.text();
         let offset = cursor.filter(|(file, _)| is_scene && *file == TabFile::Scene);
         let looked_at = offset.map(|(_, offset)| (*offset, model.serial));
-        let handles = &mut self.handles;
-        if handles.looked_at != looked_at {
-            handles.at_cursor = looked_at.map_or(Vec::new(), |(at, _)| values_at(&model, at));
+        if self.handles.looked_at != looked_at {
+            let at_cursor = match looked_at {
+                None => Vec::new(),
+                Some((at, _)) => {
+                    // The roles of the words decide what is a param.
+                    let Some(answer) = self.answer_about_text() else { return };
+                    values_at(&model, &answer.tokens, at)
+                }
+            };
+            let handles = &mut self.handles;
+            handles.at_cursor = at_cursor;
             // The cursor was moved after the param was chosen.
             handles.selected = handles.selected.take().filter(|_| looked_at.is_none());
             handles.looked_at = looked_at;
         }
+        let handles = &mut self.handles;
         let named = handles.hovered.as_ref().or(handles.selected.as_ref());
         let values = match named {
             Some(name) => vec![HandleValue::Param(name.clone())],
@@ -46,8 +55,6 @@ impl Session {
         if handles.asked.as_ref().is_some_and(|last| last.is_same(&asked)) {
             return;
         }
-        let now = |value: &HandleValue| value.get(&model, &self.param_values).unwrap_or_default();
-        handles.start = values.iter().map(now).collect();
         handles.values = values;
         handles.asked = Some(asked.clone());
         handles.worker.send(asked);
@@ -55,11 +62,11 @@ impl Session {
 
     /// The handles of the selected values, for those that move something that is seen.
     pub fn value_handles(&self) -> Vec<ValueHandle> {
-        let ValueHandles { asked, answer, values, start, .. } = &self.handles;
+        let ValueHandles { asked, answer, values, .. } = &self.handles;
         let (Some(asked), Some(answer), Some(model)) = (asked, answer, &self.model) else {
             return Vec::new();
         };
-        let is_model = Arc::ptr_eq(&answer.request.request.model, model);
+        let is_model = Arc::ptr_eq(&answer.request.request().model, model);
         if !is_model || !answer.request.has_same_params(asked) {
             return Vec::new();
         }
@@ -69,13 +76,16 @@ impl Session {
         let common = answer.handles.first().copied().flatten().filter(|_| is_vector);
         let mut moved = DVec3::ZERO;
         let mut found = Vec::new();
-        for ((value, start), handle) in values.iter().zip(start).zip(&answer.handles) {
+        for ((value, start), handle) in
+            values.iter().zip(&answer.request.start).zip(&answer.handles)
+        {
             let number = value.get(model, &self.param_values);
             if let (Some(number), Some(handle)) = (number, handle) {
                 let by = handle.motion * (number - start);
                 moved += by;
                 let handle = Handle { origin: handle.origin + by, ..*handle };
-                found.push(ValueHandle { value: value.clone(), number, handle });
+                let unit = value.unit(model);
+                found.push(ValueHandle { value: value.clone(), number, unit, handle });
             }
         }
         if let Some(common) = common {

@@ -1,6 +1,7 @@
 //! The code at the cursor lights its shapes in the picture.
 
 use eframe::egui::Key;
+use sdfc_viewer::render::shape_mask::Lit;
 
 use crate::fixture::{CTRL, Fixture};
 
@@ -19,8 +20,8 @@ fn left_part(fixture: &mut Fixture, offset: usize) -> f64 {
     let mask = fixture.harness.state().opened().lit_mask().unwrap();
     let columns = mask.size[0] as usize;
     let lit = |left: bool| {
-        let pixels = mask.inside.iter().enumerate();
-        pixels.filter(|(at, lit)| **lit && (at % columns < columns / 2) == left).count() as f64
+        let pixels = mask.pixels.iter().enumerate().filter(|(_, lit)| **lit != Lit::No);
+        pixels.filter(|(at, _)| (at % columns < columns / 2) == left).count() as f64
     };
     assert!(lit(true) + lit(false) > 500.0);
     lit(true) / (lit(true) + lit(false))

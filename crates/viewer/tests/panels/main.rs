@@ -553,3 +553,15 @@ fn stdin_two_files_and_a_file_in_a_missing_folder_are_refused() {
         assert_eq!(output.status.code(), Some(2), "{arguments:?}: {output:?}");
     }
 }
+
+#[test]
+fn a_reader_that_closes_the_pipe_early_is_no_error() {
+    for argument in ["--help", "--version"] {
+        let (reader, writer) = std::io::pipe().unwrap();
+        drop(reader);
+        let mut program = std::process::Command::new(env!("CARGO_BIN_EXE_sdfc-view"));
+        let program = program.arg(argument).stdout(writer).stderr(std::process::Stdio::piped());
+        let output = program.spawn().unwrap().wait_with_output().unwrap();
+        assert!(output.status.success() && output.stderr.is_empty(), "{argument}: {output:?}");
+    }
+}

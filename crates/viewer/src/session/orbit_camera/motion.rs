@@ -1,55 +1,14 @@
-//! An orbit camera in f64.
-//!
-//! It has a position, a direction and a pivot, and orbits around the pivot. The direction is stored
-//! separately, so the picture does not change when the pivot is set to another point. `up` is
-//! fixed: the horizon stays level.
+//! The ways to move an orbit camera.
 
 use glam::{DQuat, DVec3};
 use sdfc_render::{Bounds, Pose};
+
+use super::{DISTANCE_RANGE, OrbitCamera};
 
 /// The smallest angle between the direction and `up`, in radians.
 const MIN_POLE_ANGLE: f64 = 0.01;
 /// The angle in radians for a drag over the height of the picture.
 const RADIANS_PER_HEIGHT: f64 = std::f64::consts::PI;
-/// The smallest and greatest distance of the eye from the pivot, in scene units.
-const DISTANCE_RANGE: [f64; 2] = [1e-6, 1e9];
-/// The tangent of half the field of view (40°) for a camera that was never in perspective.
-const DEFAULT_HALF_HEIGHT: f64 = 0.363_970_234_266_202_4;
-
-/// A camera that orbits around a pivot.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct OrbitCamera {
-    eye: DVec3,
-    /// A unit vector.
-    forward: DVec3,
-    /// A unit vector.
-    up: DVec3,
-    pivot: DVec3,
-    parallel: bool,
-    /// Half the height of the picture in scene units: at distance 1, or anywhere if `parallel`.
-    half_height: f64,
-    /// The tangent of half the field of view of the last perspective projection.
-    perspective: f64,
-    /// True for a planar picture: the camera only pans and zooms.
-    planar: bool,
-}
-
-/// A camera as it is stored in the settings file.
-#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct CameraState {
-    /// Its position.
-    pub eye: [f64; 3],
-    /// The point in the middle of the picture.
-    pub target: [f64; 3],
-    /// Upward direction.
-    pub up: [f64; 3],
-    /// The point it orbits around.
-    pub pivot: [f64; 3],
-    /// True for an orthographic projection.
-    pub parallel: bool,
-    /// Half the height of the picture in scene units: at distance 1, or anywhere if `parallel`.
-    pub half_height: f64,
-}
 
 /// A side of the scene to look from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -69,71 +28,6 @@ pub enum Side {
 }
 
 impl OrbitCamera {
-    /// A camera with the given pose; its pivot is the target.
-    pub fn new(pose: &Pose) -> Self {
-        let [_, _, forward] = pose.basis();
-        let perspective = if pose.parallel { DEFAULT_HALF_HEIGHT } else { pose.half_height };
-        let up = pose.up.normalize_or(DVec3::Y);
-        let (eye, pivot, parallel, half_height) =
-            (pose.eye, pose.target, pose.parallel, pose.half_height);
-        Self { eye, forward, up, pivot, parallel, half_height, perspective, planar: false }
-    }
-
-    /// The camera as it is stored.
-    pub fn state(&self) -> CameraState {
-        let Pose { eye, target, up, parallel, half_height } = self.pose();
-        let [eye, target, up, pivot] = [eye, target, up, self.pivot].map(|it| it.to_array());
-        CameraState { eye, target, up, pivot, parallel, half_height }
-    }
-
-    /// Restores a stored camera; `None` if the numbers are not a valid camera.
-    pub fn from_state(state: &CameraState) -> Option<Self> {
-        let [eye, target, up, pivot] =
-            [state.eye, state.target, state.up, state.pivot].map(DVec3::from);
-        let (parallel, half_height) = (state.parallel, state.half_height);
-        let finite = [eye, target, up, pivot].into_iter().all(DVec3::is_finite);
-        let level = (target - eye).cross(up).length_squared() > 0.0;
-        let sized = half_height > 0.0 && half_height.is_finite();
-        if !(finite && level && sized) {
-            return None;
-        }
-        let mut camera = Self::new(&Pose { eye, target, up, parallel, half_height });
-        camera.set_pivot(pivot);
-        Some(camera)
-    }
-
-    /// The pose.
-    pub fn pose(&self) -> Pose {
-        Pose {
-            eye: self.eye,
-            target: self.eye + self.forward * self.depth(),
-            up: self.up,
-            parallel: self.parallel,
-            half_height: self.half_height,
-        }
-    }
-
-    /// The point it orbits around.
-    pub fn pivot(&self) -> DVec3 {
-        self.pivot
-    }
-
-    /// Returns true for an orthographic projection.
-    pub fn is_parallel(&self) -> bool {
-        self.parallel
-    }
-
-    /// Looks at a planar picture from the front and stays there, or may turn again.
-    pub fn set_planar(&mut self, planar: bool) {
-        if planar && !self.planar {
-            self.set_parallel(true);
-            self.look_from(Side::Front);
-            self.pivot.z = 0.0;
-            self.eye = self.pivot + DVec3::Z;
-        }
-        self.planar = planar;
-    }
-
     /// Orbits around the pivot by a drag to the right and down, in heights of the picture. A planar
     /// picture follows the pointer instead.
     pub fn orbit(&mut self, right: f64, down: f64) {
@@ -249,80 +143,11 @@ impl OrbitCamera {
         self.eye = self.pivot - self.forward * distance;
     }
 
-    /// Orbits around this point from now on, if it is in front of the camera.
-    pub fn set_pivot(&mut self, point: DVec3) {
-        if point.is_finite() && (point - self.eye).dot(self.forward) > DISTANCE_RANGE[0] {
-            self.pivot = point;
-        }
-    }
-
-    /// Switches between perspective and orthographic projection. Points at the pivot's depth keep
-    /// their size. A planar picture has no perspective.
-    pub fn set_parallel(&mut self, parallel: bool) {
-        if parallel == self.parallel || self.planar {
-            return;
-        }
-        if parallel {
-            self.perspective = self.half_height;
-            self.half_height = self.half_height_at_pivot();
-        } else {
-            let distance = self.half_height / self.perspective;
-            self.eye += self.forward * (self.depth() - distance);
-            self.half_height = self.perspective;
-        }
-        self.parallel = parallel;
-    }
-
-    /// The vertical field of view in radians; `None` for an orthographic projection.
-    pub fn fov(&self) -> Option<f64> {
-        (!self.parallel).then(|| 2.0 * self.half_height.atan())
-    }
-
-    /// Sets the vertical field of view. Points at the pivot's depth keep their size.
-    pub fn set_fov(&mut self, radians: f64) {
-        let half = (radians.clamp(0.02, 3.0) / 2.0).tan();
-        if !self.parallel {
-            let depth = self.depth();
-            self.eye += self.forward * (depth - depth * self.half_height / half);
-            self.half_height = half;
-        }
-        self.perspective = half;
-    }
-
-    /// The `camera(...)` statement that gives this camera in a scene.
-    pub fn text(&self) -> String {
-        let pose = self.pose();
-        let scale = (pose.target - pose.eye).length();
-        let point = |v: DVec3| {
-            let [x, y, z] = v.to_array().map(|lane| rounded(lane, scale));
-            format!("[{x}, {y}, {z}]")
-        };
-        let up = if self.up.abs_diff_eq(DVec3::Y, 1e-9) {
-            String::new()
-        } else {
-            format!("up: {}, ", point(self.up * scale).replace("-0,", "0,"))
-        };
-        let lens = match self.fov() {
-            Some(fov) => format!("fov: {}deg", rounded(fov.to_degrees(), 10.0)),
-            None => format!("height: {}", rounded(2.0 * self.half_height, self.half_height)),
-        };
-        format!("camera(eye: {}, target: {}, {up}{lens})", point(pose.eye), point(pose.target))
-    }
-
     fn shift(&mut self, by: DVec3) {
         if by.is_finite() {
             self.eye += by;
             self.pivot += by;
         }
-    }
-
-    /// The pivot's distance along the direction.
-    fn depth(&self) -> f64 {
-        (self.pivot - self.eye).dot(self.forward).clamp(DISTANCE_RANGE[0], DISTANCE_RANGE[1])
-    }
-
-    fn half_height_at_pivot(&self) -> f64 {
-        if self.parallel { self.half_height } else { self.half_height * self.depth() }
     }
 
     /// A rotation around the picture's horizontal axis and then around `up`, kept off the poles.
@@ -340,48 +165,10 @@ impl OrbitCamera {
     }
 }
 
-/// Rounds a number to five significant digits of `scale`, which is invisible at that scale.
-fn rounded(value: f64, scale: f64) -> f64 {
-    let digits = (4.0 - scale.abs().max(1e-9).log10().floor()).clamp(0.0, 12.0) as i32;
-    let unit = 10f64.powi(digits);
-    let rounded = (value * unit).round() / unit;
-    // Turns -0 into 0.
-    rounded + 0.0
-}
-
 #[cfg(test)]
 mod tests {
+    use super::super::tests::{assert_near, camera, project};
     use super::*;
-
-    fn camera() -> OrbitCamera {
-        OrbitCamera::new(&Pose {
-            eye: DVec3::new(4.0, 3.0, 5.0),
-            target: DVec3::new(0.0, 0.2, 0.0),
-            up: DVec3::Y,
-            parallel: false,
-            half_height: 0.3,
-        })
-    }
-
-    /// A point's position in the picture: right and up from the middle, in half heights.
-    fn project(camera: &OrbitCamera, point: DVec3) -> [f64; 2] {
-        let pose = camera.pose();
-        let [x, y, z] = pose.basis();
-        let from_eye = point - pose.eye;
-        let half = pose.half_height * if pose.parallel { 1.0 } else { from_eye.dot(z) };
-        [from_eye.dot(x) / half, from_eye.dot(y) / half]
-    }
-
-    fn assert_near(a: [f64; 2], b: [f64; 2]) {
-        assert!((a[0] - b[0]).abs() < 1e-9 && (a[1] - b[1]).abs() < 1e-9, "{a:?} is not {b:?}");
-    }
-
-    #[test]
-    fn a_new_camera_has_the_given_pose() {
-        let pose = camera().pose();
-        assert!((pose.eye - DVec3::new(4.0, 3.0, 5.0)).length() < 1e-12);
-        assert!((pose.target - DVec3::new(0.0, 0.2, 0.0)).length() < 1e-12);
-    }
 
     #[test]
     fn orbiting_keeps_the_pivot_in_place_and_the_horizon_level() {
@@ -463,20 +250,6 @@ mod tests {
     }
 
     #[test]
-    fn switching_the_projection_twice_gives_the_same_camera() {
-        let mut camera = camera();
-        let before = camera.pose();
-        let aside = camera.pivot() + camera.pose().basis()[1] * 0.4;
-        let position = project(&camera, aside);
-        camera.set_parallel(true);
-        assert_near(project(&camera, aside), position);
-        camera.set_parallel(false);
-        let after = camera.pose();
-        assert!((after.eye - before.eye).length() < 1e-9);
-        assert_eq!(after.half_height, before.half_height);
-    }
-
-    #[test]
     fn a_fitted_camera_sees_all_corners() {
         let bounds: Bounds = [[-1.0, -2.0, -0.5], [1.0, 0.5, 3.0]];
         for parallel in [false, true] {
@@ -511,46 +284,5 @@ mod tests {
         camera.look_from(Side::Top);
         let [x, y, _] = camera.pose().basis();
         assert!(x.x > 0.99 && y.z < -0.99, "{x} {y}");
-    }
-
-    #[test]
-    fn the_camera_statement_gives_the_same_camera_in_a_scene() {
-        let mut camera = camera();
-        for step in 0..3 {
-            camera.orbit(0.123 * f64::from(step), -0.07);
-            camera.set_parallel(step == 2);
-            let text = format!("sphere(1)\n{}", camera.text());
-            let compiled = sdfc::Compiler::new().compile("a", &text);
-            let scene = compiled.unwrap_or_else(|errors| panic!("{text}: {errors}"));
-            let frame = sdfc::FrameValues::defaults(scene.params());
-            let pose = Pose::new(scene.program(), &frame, None, 1.5).unwrap();
-            let own = camera.pose();
-            assert!((pose.eye - own.eye).length() < 1e-3, "{text}");
-            assert!((pose.target - own.target).length() < 1e-3, "{text}");
-            assert_eq!(pose.parallel, own.parallel);
-            assert!((pose.half_height / own.half_height - 1.0).abs() < 1e-3, "{text}");
-        }
-    }
-
-    #[test]
-    fn a_stored_camera_is_restored_and_invalid_numbers_are_refused() {
-        let pose = Pose::fitted(Some([[-1.0; 3], [1.0; 3]]), 1.5);
-        let mut camera = OrbitCamera::new(&pose);
-        camera.orbit(0.3, 0.1);
-        camera.pan(0.2, 0.1);
-        let again = OrbitCamera::from_state(&camera.state()).unwrap();
-        assert!((again.pose().eye - camera.pose().eye).length() < 1e-12);
-        assert!((again.pivot() - camera.pivot()).length() < 1e-9);
-        assert!((again.forward - camera.forward).length() < 1e-9);
-        for invalid in [f64::NAN, 0.0, -1.0] {
-            assert_eq!(
-                OrbitCamera::from_state(&CameraState { half_height: invalid, ..camera.state() }),
-                None
-            );
-        }
-        assert_eq!(
-            OrbitCamera::from_state(&CameraState { half_height: 1.0, ..CameraState::default() }),
-            None
-        );
     }
 }
