@@ -120,7 +120,7 @@ fn errors_of_an_import_are_shown_in_its_tab_and_fixed_there() {
 }
 
 #[test]
-fn f12_goes_to_a_declaration_and_alt_left_back() {
+fn f12_goes_to_a_definition_and_alt_left_back() {
     let mut fixture = with_imports();
     cursor_to(&mut fixture, "gear(1)");
     fixture.key(Modifiers::NONE, Key::F12);

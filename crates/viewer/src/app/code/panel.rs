@@ -1,13 +1,17 @@
 //! The panel with the scene's text, which can be edited, or whose numbers can be dragged.
 
-use eframe::egui::{RichText, Ui};
+use std::sync::Arc;
+
+use eframe::egui::{Key, RichText, Ui};
 
 use super::editor::CodeEditor;
+use super::text_state::{editor_id, record_replaced};
 use super::{menu, numbers, tab_bar};
 use crate::app::action::Action;
 use crate::app::{number_buttons, theme};
 use crate::session::Session;
 use crate::session::draft::Draft;
+use crate::session::save_state::Saved;
 use crate::session::tabs::TabFile;
 
 /// The longest text that can be edited in the window, in bytes. Longer ones are shown as rows.
@@ -50,6 +54,14 @@ pub fn show(
         if *session.shown_file() != TabFile::Scene {
             *mode = CodeMode::Edit;
         }
+        // The editor has the search.
+        if is_small
+            && ui.input(|it| {
+                it.modifiers.command && [Key::F, Key::H].iter().any(|key| it.key_pressed(*key))
+            })
+        {
+            *mode = CodeMode::Edit;
+        }
         if before == CodeMode::Numbers && *mode == CodeMode::Edit {
             session.write_numbers_into_text();
         }
@@ -71,14 +83,17 @@ pub fn show(
     ui.separator();
     match mode {
         CodeMode::Edit if is_small => editor.show(ui, session),
-        CodeMode::Edit | CodeMode::Numbers => numbers::show(ui, session),
+        CodeMode::Edit | CodeMode::Numbers => {
+            editor.forget_cursor();
+            numbers::show(ui, session);
+        }
     }
 }
 
 /// Says whether the text is saved, with a button that saves it.
 fn edited_state(ui: &mut Ui, session: &mut Session) {
     let Some(draft) = session.shown_draft() else {
-        let text = RichText::new("a file of the library, to read").small();
+        let text = RichText::new("library file, read-only").small();
         ui.label(text.color(theme::of(ui).weak));
         return;
     };
@@ -90,13 +105,24 @@ fn edited_state(ui: &mut Ui, session: &mut Session) {
     }
     let save = ui.small_button("Save");
     if save.on_hover_text("Write the text to its file (Ctrl+S).").clicked() {
-        session.save_text();
+        session.save_shown(Saved::All);
     }
     let revert = ui.small_button("Revert");
     if revert.on_hover_text("Go back to the text of the file; Ctrl+Z undoes that.").clicked() {
-        session.edit_shown(Draft::discard);
+        discard(ui, session);
     }
     ui.label(RichText::new("not saved").small().color(theme::of(ui).accent));
+}
+
+/// Goes back to the text of the shown file, in one step to undo.
+fn discard(ui: &Ui, session: &mut Session) {
+    let Some(draft) = session.shown_draft() else { return };
+    let [before, after] = [draft.text(), draft.file()].map(Arc::clone);
+    let id = editor_id(session.path(), session.shown_file());
+    record_replaced(ui.ctx(), id, [&before, &after]);
+    // The editor needs the keyboard, or Ctrl + Z would not reach it.
+    ui.memory_mut(|memory| memory.request_focus(id));
+    session.edit_shown(Draft::discard);
 }
 
 /// Asks what happens to a text that was edited in the window and in the file.
@@ -111,7 +137,7 @@ fn conflict(ui: &mut Ui, session: &mut Session) {
             .on_hover_text("Show the file's text in place of this; Ctrl+Z undoes that.")
             .clicked()
         {
-            session.edit_shown(Draft::discard);
+            discard(ui, session);
         }
         let keep = ui.small_button("Keep this text");
         if keep.on_hover_text("Saving this text then replaces the file's.").clicked() {
