@@ -222,7 +222,7 @@ impl App {
         if let Some(exit) = self.unsaved.show(&ctx, &mut self.session) {
             self.perform_exit(&ctx, exit);
         }
-        actions.into_iter().for_each(|action| self.perform(action));
+        actions.into_iter().for_each(|action| self.perform(&ctx, action));
         if let Some((_, since)) = &self.message {
             if since.elapsed() < MESSAGE_TIME {
                 ctx.request_repaint_after(MESSAGE_TIME);
@@ -327,14 +327,13 @@ impl App {
         self.settings = settings;
     }
 
-    fn perform(&mut self, action: Action) {
+    fn perform(&mut self, ctx: &Context, action: Action) {
         let text = match action {
             Action::Message(text) => text,
             Action::Fix(file, fix) => match self.session.apply_fix(&file, &fix) {
                 Some([before, after]) => {
                     let id = editor_id(self.session.path(), self.session.shown_file());
-                    let ctx = current_context(&self.context);
-                    record_replaced(&ctx, id, [&before, &after]);
+                    record_replaced(ctx, id, [&before, &after]);
                     return;
                 }
                 None => "the text has changed since".to_owned(),

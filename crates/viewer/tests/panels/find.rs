@@ -91,3 +91,13 @@ fn a_selection_becomes_the_search_text() {
     let text = fixture.harness.state().opened().text().to_string();
     assert_eq!(text, BOXES.replace("box(1", "cube(1"));
 }
+
+#[test]
+fn the_search_opens_while_numbers_are_dragged() {
+    let mut fixture = Fixture::with_text(BOXES);
+    fixture.click("Drag numbers");
+    assert!(fixture.harness.query_by_role(Role::MultilineTextInput).is_none());
+    fixture.key(Modifiers::COMMAND, Key::F);
+    type_into(&mut fixture, "find", "box");
+    assert!(fixture.has("1 of 4"));
+}

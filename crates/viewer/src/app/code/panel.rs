@@ -37,6 +37,7 @@ pub fn show(
     ui.add_space(4.0);
     tab_bar::show(ui, session);
     let is_small = session.shown_text().len() <= MAX_EDITED_BYTES;
+    let mut discards = false;
     ui.horizontal_wrapped(|ui| {
         let before = *mode;
         let edits = ui.add_enabled_ui(is_small, |ui| {
@@ -69,7 +70,7 @@ pub fn show(
             menu::show(ui, session, editor);
             editor.color_button(ui, session);
         }
-        edited_state(ui, session);
+        discards |= edited_state(ui, session);
     });
     let changed = session.param_values.changed_numbers() > 0;
     if let Some(model) = session.model.clone()
@@ -78,7 +79,10 @@ pub fn show(
         number_buttons::show(ui, session, &model, actions);
     }
     if session.shown_draft().is_some_and(Draft::is_in_conflict) {
-        conflict(ui, session);
+        discards |= conflict(ui, session);
+    }
+    if discards {
+        discard(ui, session);
     }
     ui.separator();
     match mode {
@@ -88,30 +92,36 @@ pub fn show(
             numbers::show(ui, session);
         }
     }
+    if discards {
+        // The editor needs the keyboard, or Ctrl + Z would not reach it. Until it was shown, the
+        // click on the button would take the keyboard away again.
+        let id = editor_id(session.path(), session.shown_file());
+        ui.memory_mut(|memory| memory.request_focus(id));
+    }
 }
 
-/// Says whether the text is saved, with a button that saves it.
-fn edited_state(ui: &mut Ui, session: &mut Session) {
+/// Says whether the text is saved, with a button that saves it. Returns true if the user gives up
+/// the edited text.
+fn edited_state(ui: &mut Ui, session: &mut Session) -> bool {
     let Some(draft) = session.shown_draft() else {
         let text = RichText::new("library file, read-only").small();
         ui.label(text.color(theme::of(ui).weak));
-        return;
+        return false;
     };
     if !draft.is_edited() {
         let text = RichText::new("type to change the scene").small().color(theme::of(ui).weak);
         let help = "The text of the file. Edits in your own editor are followed, too.";
         ui.label(text).on_hover_text(help);
-        return;
+        return false;
     }
     let save = ui.small_button("Save");
     if save.on_hover_text("Write the text to its file (Ctrl+S).").clicked() {
         session.save_shown(Saved::All);
     }
     let revert = ui.small_button("Revert");
-    if revert.on_hover_text("Go back to the text of the file; Ctrl+Z undoes that.").clicked() {
-        discard(ui, session);
-    }
+    let revert = revert.on_hover_text("Go back to the text of the file; Ctrl+Z undoes that.");
     ui.label(RichText::new("not saved").small().color(theme::of(ui).accent));
+    revert.clicked()
 }
 
 /// Goes back to the text of the shown file, in one step to undo.
@@ -120,28 +130,25 @@ fn discard(ui: &Ui, session: &mut Session) {
     let [before, after] = [draft.text(), draft.file()].map(Arc::clone);
     let id = editor_id(session.path(), session.shown_file());
     record_replaced(ui.ctx(), id, [&before, &after]);
-    // The editor needs the keyboard, or Ctrl + Z would not reach it.
-    ui.memory_mut(|memory| memory.request_focus(id));
     session.edit_shown(Draft::discard);
 }
 
-/// Asks what happens to a text that was edited in the window and in the file.
-fn conflict(ui: &mut Ui, session: &mut Session) {
+/// Asks what happens to a text that was edited in the window and in the file. Returns true if the
+/// user gives up the edited text.
+fn conflict(ui: &mut Ui, session: &mut Session) -> bool {
     let color = theme::of(ui).warning;
     ui.label(
         RichText::new("The file was changed outside, and this text is not saved.").color(color),
     );
-    ui.horizontal_wrapped(|ui| {
+    let buttons = ui.horizontal_wrapped(|ui| {
         let load = ui.small_button("Load the file");
-        if load
-            .on_hover_text("Show the file's text in place of this; Ctrl+Z undoes that.")
-            .clicked()
-        {
-            discard(ui, session);
-        }
+        let help = "Show the file's text in place of this; Ctrl+Z undoes that.";
+        let load = load.on_hover_text(help);
         let keep = ui.small_button("Keep this text");
         if keep.on_hover_text("Saving this text then replaces the file's.").clicked() {
             session.edit_shown(Draft::keep);
         }
+        load.clicked()
     });
+    buttons.inner
 }
