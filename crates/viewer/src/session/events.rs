@@ -135,17 +135,18 @@ impl Session {
 #[cfg(test)]
 mod tests {
     use std::path::Path;
-    use std::sync::mpsc::channel;
+    use std::sync::mpsc::{Receiver, channel};
 
     use super::*;
     use crate::session::save_state::{SaveState, Saved};
     use crate::test_support::TIMEOUT;
 
     /// A session with a scene that draws nothing, which reports when a worker wakes the window.
-    fn opened(path: &Path) -> (Session, std::sync::mpsc::Receiver<()>) {
+    fn opened(path: &Path) -> (Session, Receiver<()>) {
         std::fs::write(path, "let a = 1\n").unwrap();
         let (sender, woken) = channel();
-        let wake = move || drop(sender.send(()));
+        // Sending fails only at the end of a test.
+        let wake = move || sender.send(()).unwrap_or_default();
         (Session::open(path, Arc::new(wake)).unwrap(), woken)
     }
 
@@ -157,6 +158,7 @@ mod tests {
         session.handles.selected = Some("r".to_owned());
         session.open_other(folder.path().join("missing.sdf"));
         while session.problem.is_none() {
+            woken.recv_timeout(TIMEOUT).unwrap();
             session.poll();
         }
         assert_eq!((&**session.text(), &session.handles.selected), ("", &None));

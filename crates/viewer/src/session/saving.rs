@@ -272,7 +272,9 @@ mod tests {
         let names = ["a.sdf", "b.sdf"];
         let mut session = opened(folder.path(), &names);
         session.edit(|draft| draft.set_text("// 1\n"));
-        names.map(|name| session.tabs.edit(name, |draft| draft.set_text("// 1\n")));
+        for name in names {
+            session.tabs.edit(name, |draft| draft.set_text("// 1\n"));
+        }
         read_import(&mut session, "a.sdf", "// theirs\n");
         session.save_all();
         finish(&mut session);
