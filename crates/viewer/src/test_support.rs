@@ -7,7 +7,7 @@ use std::sync::mpsc::{Receiver, channel};
 use std::time::Duration;
 
 use crate::compile::diagnostics::SceneDiagnostics;
-use crate::compile::request::{BuildRequest, CompileEvent};
+use crate::compile::request::{BuildRequest, CompileEvent, CompileReport};
 use crate::compile::worker::CompileWorker;
 use crate::scene::model::Model;
 
@@ -29,22 +29,27 @@ pub fn on_cpu(path: &Path) -> BuildRequest {
     BuildRequest { on_cpu: true, ..BuildRequest::new(path) }
 }
 
-/// A compile worker and its events.
-pub fn start_worker() -> (CompileWorker, Receiver<CompileEvent>) {
+/// A compile worker and its reports.
+pub fn start_worker() -> (CompileWorker, Receiver<CompileReport>) {
     let (sender, events) = channel();
     (CompileWorker::new(sender, || {}).unwrap(), events)
 }
 
+/// The next event.
+pub fn next_event(events: &Receiver<CompileReport>) -> CompileEvent {
+    events.recv_timeout(TIMEOUT).unwrap().event
+}
+
 /// The model of a source without errors.
-pub fn ready_model(events: &Receiver<CompileEvent>) -> Arc<Model> {
+pub fn ready_model(events: &Receiver<CompileReport>) -> Arc<Model> {
     assert_eq!(expect_compiled(events).0.errors(), 0);
     expect_model(events)
 }
 
 /// The model in the next event.
 #[allow(clippy::wildcard_enum_match_arm, reason = "a test that meets anything else fails")]
-pub fn expect_model(events: &Receiver<CompileEvent>) -> Arc<Model> {
-    match events.recv_timeout(TIMEOUT).unwrap() {
+pub fn expect_model(events: &Receiver<CompileReport>) -> Arc<Model> {
+    match next_event(events) {
         CompileEvent::Ready(model) => model,
         other => panic!("{other:?}"),
     }
@@ -52,8 +57,8 @@ pub fn expect_model(events: &Receiver<CompileEvent>) -> Arc<Model> {
 
 /// The diagnostics and folders in the next event.
 #[allow(clippy::wildcard_enum_match_arm, reason = "a test that meets anything else fails")]
-pub fn expect_compiled(events: &Receiver<CompileEvent>) -> (SceneDiagnostics, BTreeSet<PathBuf>) {
-    match events.recv_timeout(TIMEOUT).unwrap() {
+pub fn expect_compiled(events: &Receiver<CompileReport>) -> (SceneDiagnostics, BTreeSet<PathBuf>) {
+    match next_event(events) {
         CompileEvent::Compiled { diagnostics, folders, .. } => (diagnostics, folders),
         other => panic!("{other:?}"),
     }

@@ -78,7 +78,7 @@ mod tests {
         assert_eq!(count("box", true, false), 3);
         assert_eq!(count("box", false, true), 3);
         assert_eq!(count("box", true, true), 2);
-        // Not a pattern, and not only ASCII.
+        // The query is not a pattern, and case is ignored beyond ASCII too.
         assert_eq!([count("(", false, false), count(".", false, false)], [4, 0]);
         assert_eq!([count("GRÖSSE", false, false), count("GRÖßE", false, false)], [0, 2]);
         assert_eq!(count("", false, false), 0);

@@ -33,7 +33,7 @@ const ROWS: [(&str, &str); 27] = [
     ("Space", "play or pause the time"),
     ("Ctrl + S", "save the shown text; for the scene also changed values"),
     ("Ctrl + F, Ctrl + H", "find, replace text"),
-    ("F12, Ctrl + click", "go to the declaration of a name"),
+    ("F12, Ctrl + click", "go to the definition of a name"),
     ("Alt + Left", "go back"),
     ("Alt + drag in the code", "change a number"),
     ("Ctrl + E", "export a picture, an animation, a shader"),

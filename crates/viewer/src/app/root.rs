@@ -9,6 +9,7 @@ use eframe::egui::{self, Context, Ui};
 use super::action::Action;
 use super::canvas::Canvas;
 use super::code::panel::{self as code_panel, CodeMode};
+use super::code::text_state::{editor_id, record_replaced};
 use super::code::{self, CodeEditor};
 use super::export_dialog::ExportDialog;
 use super::monitor::Monitor;
@@ -46,6 +47,8 @@ pub struct App {
     path_dialog: PathDialog,
     /// True once the user has confirmed that the window closes.
     may_close: bool,
+    /// True if the stored texts of the scene are those that this window restored or stored.
+    owns_stored_texts: bool,
     settings: Settings,
     settings_path: Option<PathBuf>,
     last_frame: Instant,
@@ -69,7 +72,7 @@ impl App {
         let wake = move || current_context(&shared).request_repaint();
         let mut session = Session::open(path, Arc::new(wake))?;
         session.format_on_save = settings.format_on_save;
-        restore(&settings, settings_path.as_deref(), &mut session);
+        let owns_stored_texts = restore(&settings, settings_path.as_deref(), &mut session);
         Ok(Self {
             session,
             context,
@@ -84,6 +87,7 @@ impl App {
             unsaved: UnsavedDialog::default(),
             path_dialog: PathDialog::default(),
             may_close: false,
+            owns_stored_texts,
             settings,
             settings_path,
             last_frame: Instant::now(),
@@ -104,12 +108,16 @@ impl App {
         self.session.messages.push(text.to_owned());
     }
 
-    /// Stores the settings before the window closes. The user has agreed that texts are lost that
-    /// are not saved.
-    pub(super) fn close(&mut self) {
+    /// Stores the settings when the window closes, and the unsaved texts unless the user chose to
+    /// lose them.
+    pub fn close(&mut self) {
         let ctx = current_context(&self.context);
         self.store_settings(&ctx);
-        self.store_texts(UnsavedScene::default());
+        let texts = match self.may_close {
+            true => UnsavedScene::default(),
+            false => self.session.unsaved_texts(),
+        };
+        self.store_texts(texts);
     }
 
     /// Stores the settings, and the texts that are not saved, because the program cannot go on.
@@ -120,9 +128,16 @@ impl App {
         self.store_texts(self.session.unsaved_texts());
     }
 
-    fn store_texts(&self, unsaved: UnsavedScene) {
-        let texts = self.settings_path.as_deref().map(UnsavedTexts::beside);
-        texts.into_iter().for_each(|texts| texts.store(self.session.path(), unsaved.clone()));
+    /// Stores texts of the open scene. If there are none, the stored ones are forgotten, unless
+    /// they are those of another window.
+    fn store_texts(&mut self, unsaved: UnsavedScene) {
+        let has_texts = !unsaved.is_empty();
+        if let Some(path) = &self.settings_path
+            && (has_texts || self.owns_stored_texts)
+        {
+            UnsavedTexts::beside(path).store(self.session.path(), unsaved);
+            self.owns_stored_texts = has_texts;
+        }
     }
 
     /// The open scene, to look at.
@@ -207,7 +222,7 @@ impl App {
         if let Some(exit) = self.unsaved.show(&ctx, &mut self.session) {
             self.perform_exit(&ctx, exit);
         }
-        actions.into_iter().for_each(|action| self.perform(action));
+        actions.into_iter().for_each(|action| self.perform(&ctx, action));
         if let Some((_, since)) = &self.message {
             if since.elapsed() < MESSAGE_TIME {
                 ctx.request_repaint_after(MESSAGE_TIME);
@@ -244,7 +259,7 @@ impl App {
         }
     }
 
-    /// Leaves the scene, or asks first if changed numbers would be lost.
+    /// Leaves the scene, or asks first if texts or numbers would be lost.
     fn leave(&mut self, ctx: &Context, exit: Exit) {
         if let Some(exit) = self.unsaved.request(exit, &self.session) {
             self.perform_exit(ctx, exit);
@@ -294,7 +309,8 @@ impl App {
         ctx.send_viewport_cmd(egui::ViewportCommand::Title(title(&path)));
         self.session.open_other(path);
         self.code_editor = CodeEditor::default();
-        restore(&self.settings, self.settings_path.as_deref(), &mut self.session);
+        let settings_path = self.settings_path.as_deref();
+        self.owns_stored_texts = restore(&self.settings, settings_path, &mut self.session);
     }
 
     /// Stores the settings, together with what other windows have stored meanwhile.
@@ -311,12 +327,16 @@ impl App {
         self.settings = settings;
     }
 
-    fn perform(&mut self, action: Action) {
+    fn perform(&mut self, ctx: &Context, action: Action) {
         let text = match action {
             Action::Message(text) => text,
             Action::Fix(file, fix) => match self.session.apply_fix(&file, &fix) {
-                true => return,
-                false => "the text has changed since".to_owned(),
+                Some([before, after]) => {
+                    let id = editor_id(self.session.path(), self.session.shown_file());
+                    record_replaced(ctx, id, [&before, &after]);
+                    return;
+                }
+                None => "the text has changed since".to_owned(),
             },
             Action::Copy(text) => match self.copy(&text) {
                 Ok(()) => format!("copied: {text}"),
@@ -352,15 +372,15 @@ fn current_context(shared: &Mutex<Context>) -> Context {
     shared.lock().unwrap_or_else(PoisonError::into_inner).clone()
 }
 
-/// Restores the stored camera, params and texts of a scene.
-fn restore(settings: &Settings, settings_path: Option<&Path>, session: &mut Session) {
-    let unsaved = settings_path.map(UnsavedTexts::beside);
-    if let Some(unsaved) = unsaved.and_then(|texts| texts.of(session.path())) {
-        session.restore_texts(&unsaved);
-    }
+/// Restores the stored camera, params and texts of a scene. Returns true if there are texts.
+fn restore(settings: &Settings, settings_path: Option<&Path>, session: &mut Session) -> bool {
+    let texts = settings_path.map(UnsavedTexts::beside);
+    let unsaved = texts.and_then(|texts| texts.of(session.path()));
+    unsaved.iter().for_each(|unsaved| session.restore_texts(unsaved));
     if let Some(scene) = settings.scene(session.path()) {
         session.restore(scene.camera.as_ref(), &scene.params);
     }
+    unsaved.is_some()
 }
 
 impl std::fmt::Debug for App {

@@ -77,10 +77,12 @@ pub fn handle(
     if ctx.input(|input| input.key_pressed(Key::Questionmark)) || pressed(Key::F1) {
         panels.help = !panels.help;
     }
-    // egui closes menus and dialogs on Esc; then it means nothing else.
-    let egui_closes =
-        egui::Popup::is_any_open(ctx) || ctx.memory(|memory| memory.top_modal_layer().is_some());
-    if pressed(Key::Escape) && !egui_closes {
+    if pressed(Key::Escape) && !egui_closes(ctx) {
         (panels.help, panels.export) = (false, false);
     }
+}
+
+/// Returns true if egui closes a menu or a dialog on Esc. The key then means nothing else.
+pub fn egui_closes(ctx: &Context) -> bool {
+    egui::Popup::is_any_open(ctx) || ctx.memory(|memory| memory.top_modal_layer().is_some())
 }

@@ -35,7 +35,7 @@ impl UnsavedDialog {
         None
     }
 
-    /// Shows the question. Returns the exit once the numbers are in the file or given up.
+    /// Shows the question. Returns the exit once everything is saved or the user discards it.
     pub fn show(&mut self, ctx: &Context, session: &mut Session) -> Option<Exit> {
         let exit = self.exit.clone()?;
         let saved = self.saving && session.save_state() == SaveState::Idle;

@@ -7,6 +7,7 @@
 //! constants: they are in lists, and the running pipeline gets other lists.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -15,7 +16,7 @@ use sdfc_lang::live_literals::LiveLiteral;
 
 use crate::compile::diagnostics::SceneDiagnostics;
 use crate::compile::engines::{Engines, PreparedEngine, on_cpu};
-use crate::compile::request::{BuildRequest, CompileEvent, FileTexts};
+use crate::compile::request::{BuildRequest, CompileEvent, CompileReport, FileTexts};
 use crate::compile::text_diff::TextDiff;
 use crate::latest_channel::LatestChannel;
 use crate::scene::document::{Document, EditedFolder, Imports, TextsByPath};
@@ -64,10 +65,24 @@ struct SceneContent {
     id: u64,
 }
 
+/// Reports the events of one build.
+struct Reporter<R> {
+    send: R,
+    /// The scene's file.
+    path: PathBuf,
+    began: Instant,
+}
+
+impl<R: FnMut(CompileReport)> Reporter<R> {
+    fn report(&mut self, event: CompileEvent) {
+        (self.send)(CompileReport { path: self.path.clone(), began: self.began, event });
+    }
+}
+
 /// Builds models for the compile worker, and keeps the results that the next build can reuse.
 pub struct ModelBuilder<R> {
     requests: Arc<LatestChannel<BuildRequest>>,
-    report: R,
+    reporter: Reporter<R>,
     last_read: Option<LastRead>,
     /// The texts of the files in place of which drafts are compiled, when they were read last.
     last_files: FileTexts,
@@ -84,12 +99,12 @@ pub struct ModelBuilder<R> {
     without_loops: Option<[usize; 2]>,
 }
 
-impl<R: FnMut(CompileEvent)> ModelBuilder<R> {
+impl<R: FnMut(CompileReport)> ModelBuilder<R> {
     /// A builder that has built nothing. `requests` tells whether a newer request waits.
-    pub fn new(requests: Arc<LatestChannel<BuildRequest>>, report: R) -> Self {
+    pub fn new(requests: Arc<LatestChannel<BuildRequest>>, send: R) -> Self {
         Self {
             requests,
-            report,
+            reporter: Reporter { send, path: PathBuf::new(), began: Instant::now() },
             last_read: None,
             last_files: FileTexts::default(),
             shown: None,
@@ -105,11 +120,12 @@ impl<R: FnMut(CompileEvent)> ModelBuilder<R> {
 
     /// Handles a request. A panic in the compiler is reported and does not end the thread.
     pub fn handle(&mut self, request: &BuildRequest) {
+        (self.reporter.path, self.reporter.began) = (request.path.clone(), Instant::now());
         let result = catch_unwind(AssertUnwindSafe(|| self.build(request)));
         if result.is_err() {
             self.last_read = None;
             let what = "the compiler crashed on this scene; please report it with the scene";
-            (self.report)(CompileEvent::Failed(what.to_owned()));
+            self.reporter.report(CompileEvent::Failed(what.to_owned()));
         }
     }
 
@@ -137,7 +153,7 @@ impl<R: FnMut(CompileEvent)> ModelBuilder<R> {
             }
             (Err(error), None) => {
                 self.last_read = None;
-                (self.report)(CompileEvent::Unreadable(error.to_string()));
+                self.reporter.report(CompileEvent::Unreadable(error.to_string()));
                 return false;
             }
         };
@@ -150,7 +166,7 @@ impl<R: FnMut(CompileEvent)> ModelBuilder<R> {
             self.last_read.as_ref().is_some_and(|last| last.gives_same_scene(request, &document));
         if same_scene && self.last_read.as_ref().is_some_and(|last| last.request == *request) {
             if has_changed {
-                (self.report)(CompileEvent::FilesChanged(files));
+                self.reporter.report(CompileEvent::FilesChanged(files));
             }
             return true;
         }
@@ -169,11 +185,18 @@ impl<R: FnMut(CompileEvent)> ModelBuilder<R> {
         let draws = scene.as_ref().is_some_and(Scene::draws);
         let text = document.source.as_str().into();
         let imports = texts.clone();
-        (self.report)(CompileEvent::Compiled { text, imports, files, diagnostics, folders, draws });
+        self.reporter.report(CompileEvent::Compiled {
+            text,
+            imports,
+            files,
+            diagnostics,
+            folders,
+            draws,
+        });
         match scene {
             None => false,
             Some(_) if !draws => {
-                (self.report)(CompileEvent::Empty);
+                self.reporter.report(CompileEvent::Empty);
                 false
             }
             Some(scene) => {
@@ -293,7 +316,7 @@ impl<R: FnMut(CompileEvent)> ModelBuilder<R> {
                 self.last_serial += 1;
                 let model = Arc::new(self.model(request, &content, prepared, build_times));
                 self.shown = Some((request.clone(), content));
-                (self.report)(CompileEvent::Ready(model));
+                self.reporter.report(CompileEvent::Ready(model));
                 true
             }
             Ok(None) => {
@@ -305,7 +328,7 @@ impl<R: FnMut(CompileEvent)> ModelBuilder<R> {
             Err(error) => {
                 self.last_read = None;
                 self.engines.drop_devices();
-                (self.report)(CompileEvent::Failed(error.to_string()));
+                self.reporter.report(CompileEvent::Failed(error.to_string()));
                 false
             }
         }
@@ -357,11 +380,11 @@ impl<R: FnMut(CompileEvent)> ModelBuilder<R> {
         if request.on_cpu {
             return on_cpu(scene, method, None).map(Some);
         }
-        let Self { engines, requests, skipped, report, .. } = self;
+        let Self { engines, requests, skipped, reporter, .. } = self;
         let proceed = || {
             let proceed = !requests.is_interrupted() || *skipped >= MAX_SKIPPED;
             if proceed {
-                report(CompileEvent::BuildingPipeline);
+                reporter.report(CompileEvent::BuildingPipeline);
             }
             proceed
         };

@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 use std::sync::Arc;
+use std::time::Instant;
 
 use sdfc::CompileValues;
 
@@ -61,6 +62,17 @@ pub struct FileTexts {
 }
 
 /// A report of the compile worker.
+#[derive(Debug)]
+pub struct CompileReport {
+    /// The scene's file.
+    pub path: PathBuf,
+    /// When the build began, before any file was read.
+    pub began: Instant,
+    /// What happened.
+    pub event: CompileEvent,
+}
+
+/// What happened during a build.
 #[derive(Debug)]
 pub enum CompileEvent {
     /// The file cannot be read; why.

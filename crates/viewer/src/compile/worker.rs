@@ -7,7 +7,7 @@ use std::sync::Arc;
 use std::sync::mpsc::Sender;
 
 use crate::compile::builder::ModelBuilder;
-use crate::compile::request::{BuildRequest, CompileEvent};
+use crate::compile::request::{BuildRequest, CompileEvent, CompileReport};
 use crate::latest_channel::LatestChannel;
 use crate::worker_thread::WorkerThread;
 
@@ -16,26 +16,26 @@ use crate::worker_thread::WorkerThread;
 pub struct CompileWorker(WorkerThread<BuildRequest>);
 
 impl CompileWorker {
-    /// Starts the thread. It sends `events` and calls `wake` when there are some.
+    /// Starts the thread. It sends `reports` and calls `wake` when there are some.
     ///
     /// # Errors
     ///
     /// The system cannot start a thread.
     pub fn new(
-        events: Sender<CompileEvent>,
+        reports: Sender<CompileReport>,
         wake: impl Fn() + Send + 'static,
     ) -> std::io::Result<Self> {
-        let report = move |event| {
+        let send = move |report: CompileReport| {
             // Another event follows at once; the window shows both together.
-            let is_last = !matches!(event, CompileEvent::Compiled { draws: true, .. });
+            let is_last = !matches!(report.event, CompileEvent::Compiled { draws: true, .. });
             // Sending fails only after the session is dropped.
-            let _ = events.send(event);
+            let _ = reports.send(report);
             if is_last {
                 wake();
             }
         };
         let init = |requests| {
-            let mut builder = ModelBuilder::new(requests, report);
+            let mut builder = ModelBuilder::new(requests, send);
             move |request| builder.handle(&request)
         };
         WorkerThread::start("compile", init).map(Self)
@@ -58,7 +58,7 @@ mod tests {
     use crate::compile::diagnostics::SceneDiagnostics;
     use crate::compile::request::{BuildRequest, CompileEvent};
     use crate::test_support::{
-        TIMEOUT, expect_compiled, expect_model, on_cpu, ready_model, start_worker,
+        expect_compiled, expect_model, next_event, on_cpu, ready_model, start_worker,
     };
 
     #[test]
@@ -67,7 +67,7 @@ mod tests {
         let path = folder.path().join("a.sdf");
         let (worker, events) = start_worker();
         worker.send(on_cpu(&path));
-        assert!(matches!(events.recv_timeout(TIMEOUT).unwrap(), CompileEvent::Unreadable(_)));
+        assert!(matches!(next_event(&events), CompileEvent::Unreadable(_)));
         for number in 1..4 {
             std::fs::write(&path, format!("spere({number})")).unwrap();
             worker.send(on_cpu(&path));
@@ -81,7 +81,7 @@ mod tests {
         std::fs::write(&path, "let a = 1\n").unwrap();
         worker.send(on_cpu(&path));
         assert_eq!(expect_compiled(&events).0.errors(), 0);
-        assert!(matches!(events.recv_timeout(TIMEOUT).unwrap(), CompileEvent::Empty));
+        assert!(matches!(next_event(&events), CompileEvent::Empty));
     }
 
     /// The file is broken, draws nothing, or is deleted.
@@ -102,10 +102,10 @@ mod tests {
             }
             parallel = !parallel;
             worker.send(BuildRequest { parallel: Some(parallel), ..on_cpu(&path) });
-            let event = events.recv_timeout(TIMEOUT).unwrap();
+            let event = next_event(&events);
             assert_eq!(matches!(event, CompileEvent::Unreadable(_)), text.is_none(), "{event:?}");
             if text.is_some_and(|text| text.starts_with("let")) {
-                assert!(matches!(events.recv_timeout(TIMEOUT).unwrap(), CompileEvent::Empty));
+                assert!(matches!(next_event(&events), CompileEvent::Empty));
             }
             let model = expect_model(&events);
             assert_eq!((model.parallel, model.source.as_str()), (parallel, "sphere(1)\n"));
@@ -113,7 +113,7 @@ mod tests {
         }
         // No scene of another file has been shown yet.
         worker.send(on_cpu(&folder.path().join("b.sdf")));
-        assert!(matches!(events.recv_timeout(TIMEOUT).unwrap(), CompileEvent::Unreadable(_)));
+        assert!(matches!(next_event(&events), CompileEvent::Unreadable(_)));
         std::fs::write(&path, "sphere(2)\n").unwrap();
         worker.send(on_cpu(&path));
         assert_eq!(ready_model(&events).source, "sphere(2)\n");
@@ -215,7 +215,7 @@ mod tests {
         std::fs::write(&path, "sphere(0.75)\n").unwrap();
         worker.send(on_cpu(&path));
         loop {
-            match events.recv_timeout(TIMEOUT).unwrap() {
+            match next_event(&events) {
                 CompileEvent::Ready(model) if model.source == "sphere(0.75)\n" => {
                     assert_eq!(model.scene.distance([0.0, 0.0, 2.0]).unwrap(), 1.25);
                     return;

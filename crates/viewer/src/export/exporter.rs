@@ -3,6 +3,7 @@
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::Instant;
 
 use sdfc::{Code, FrameValues, PictureOptions, ShaderOptions};
 use sdfc_files::{Folder, Format};
@@ -65,6 +66,8 @@ pub struct ExportOutcome {
     pub source: Option<PathBuf>,
     /// A message for the status line, of success or failure.
     pub result: Result<String, String>,
+    /// When the job ended.
+    pub ended: Instant,
 }
 
 /// The state of the current job, shared between threads.
@@ -99,7 +102,8 @@ impl Exporter {
                 None
             }
         };
-        ExportOutcome { source, result: self.write_file(job) }
+        let result = self.write_file(job);
+        ExportOutcome { source, result, ended: Instant::now() }
     }
 
     fn write_file(&self, job: ExportJob) -> Result<String, String> {

@@ -20,6 +20,9 @@ pub struct LanguageRequest {
     pub text: Arc<str>,
     /// The edited texts of imported files.
     pub drafts: TextsByPath,
+    /// The texts of the imported files that were compiled last. An import that changes on disk
+    /// makes it another question.
+    pub imports: TextsByPath,
     /// The byte offset of the cursor, if completions are wanted.
     pub cursor: Option<usize>,
 }
@@ -28,8 +31,8 @@ impl LanguageRequest {
     /// A question about a scene without edited imports, without completions.
     pub fn new(path: &Path, text: &str) -> Self {
         let file = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        let (path, text, drafts) = (path.to_owned(), text.into(), TextsByPath::new());
-        Self { path, file, text, drafts, cursor: None }
+        let (drafts, imports) = (TextsByPath::new(), TextsByPath::new());
+        Self { path: path.to_owned(), file, text: text.into(), drafts, imports, cursor: None }
     }
 }
 
@@ -95,7 +98,7 @@ fn answer(request: LanguageRequest, last: Option<LanguageAnswer>) -> LanguageAns
     let is_same = |last: &LanguageAnswer| {
         let last = &last.request;
         (&last.path, &last.file, &last.text) == (&request.path, name, text)
-            && last.drafts == request.drafts
+            && (&last.drafts, &last.imports) == (&request.drafts, &request.imports)
     };
     if let Some(last) = last.filter(is_same) {
         return LanguageAnswer { request, completions, ..last };
@@ -124,5 +127,32 @@ impl Resolver for BelowFolder<'_> {
 
     fn read_bytes(&self, path: &str) -> Result<Vec<u8>, String> {
         self.folder.read_bytes(&self.path(path))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use sdfc_ide::definition;
+
+    use super::*;
+
+    #[test]
+    fn an_import_that_changes_on_disk_is_read_again() {
+        let folder = tempfile::tempdir().unwrap();
+        let (path, part) = (folder.path().join("a.sdf"), folder.path().join("b.sdf"));
+        let text = "import ball from \"b.sdf\"\nball()\n";
+        let ask = |ball: &str, last: Option<LanguageAnswer>| {
+            std::fs::write(&part, ball).unwrap();
+            let imports = [("b.sdf".to_owned(), Arc::from(ball))].into();
+            answer(LanguageRequest { imports, ..LanguageRequest::new(&path, text) }, last)
+        };
+        let start = |answer: &LanguageAnswer| {
+            definition(&answer.analysis, text.len() - 4).map(|found| found.start)
+        };
+        let ball = "solid ball() = sphere(1)(p)\n";
+        let first = ask(ball, None);
+        let second = ask(&format!("// ball\n{ball}"), Some(first.clone()));
+        assert_eq!(start(&second), start(&first).map(|start| start + 8));
+        assert!(start(&first).is_some());
     }
 }

@@ -26,7 +26,7 @@ use crate::accuracy::checks::AccuracyChecks;
 use crate::accuracy::comparison::ComparisonJob;
 use crate::compile::diagnostics::{SceneDiagnostics, ShownDiagnostic};
 use crate::compile::file_watcher::FileWatcher;
-use crate::compile::request::{BuildRequest, CompileEvent};
+use crate::compile::request::{BuildRequest, CompileReport};
 use crate::compile::worker::CompileWorker;
 use crate::export::exporter::ExportOutcome;
 use crate::export::worker::ExportWorker;
@@ -61,7 +61,7 @@ pub type Wake = Arc<dyn Fn() + Send + Sync>;
 pub struct Session {
     build: BuildRequest,
     compile_worker: CompileWorker,
-    compile_events: Receiver<CompileEvent>,
+    compile_reports: Receiver<CompileReport>,
     render_worker: RenderWorker,
     render_events: Receiver<RenderEvent>,
     export_worker: ExportWorker,
@@ -147,7 +147,7 @@ impl Session {
     /// The system cannot start a thread.
     pub fn open(path: &Path, wake: Wake) -> std::io::Result<Self> {
         let build = BuildRequest::new(path);
-        let (sender, compile_events) = channel();
+        let (sender, compile_reports) = channel();
         let wake_window = Arc::clone(&wake);
         let compile_worker = CompileWorker::new(sender, move || wake_window())?;
         let (sender, render_events) = channel();
@@ -174,7 +174,7 @@ impl Session {
         let mut session = Self {
             build,
             compile_worker,
-            compile_events,
+            compile_reports,
             render_worker,
             render_events,
             export_worker,
@@ -260,6 +260,8 @@ impl Session {
             (SceneDiagnostics::default(), None, None);
         (self.draft, self.saving) = (Draft::default(), Saving::default());
         self.tabs = Tabs::default();
+        (self.language, self.language_request, self.handles.selected) = (None, None, None);
+        self.lit_shapes.clear();
         (self.follows_scene, self.fitted, self.tolerance) = (true, None, 1.0);
         self.accuracy.reset();
         self.watch_own_folder();

@@ -1,6 +1,6 @@
 //! The state of writing edited texts and changed values to their files.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 /// Which changed values are saved with the text.
@@ -12,6 +12,13 @@ pub enum Saved {
     Params,
     /// The text with both.
     All,
+}
+
+impl Saved {
+    /// What both save.
+    pub fn and(self, other: Self) -> Self {
+        if self == other { self } else { Self::All }
+    }
 }
 
 /// Whether files are being written.
@@ -31,12 +38,18 @@ pub enum SaveState {
 pub struct Saving {
     /// What is being written to imported files, by their path beside the scene.
     pub imports: BTreeMap<String, WrittenImport>,
-    /// True while the scene is being written.
-    pub writes_scene: bool,
-    /// Why the last attempt failed.
+    /// The imported files that are written again as soon as they are written.
+    pub next_imports: BTreeSet<String>,
+    /// What is being written to the scene's file.
+    pub scene: Option<Edited>,
+    /// What is written to the scene's file as soon as it is written.
+    pub next_scene: Option<Saved>,
+    /// Why an attempt failed since the user asked for saving last.
     pub failure: Option<String>,
-    /// What was written last, until the shown scene is that.
+    /// What was written to the file last, until the shown scene is that.
     pub written: Option<Edited>,
+    /// The text into which numbers were written last, until the shown scene is that.
+    pub written_into_text: Option<Edited>,
 }
 
 impl Saving {
@@ -44,7 +57,7 @@ impl Saving {
     pub fn state(&self) -> SaveState {
         match &self.failure {
             Some(why) => SaveState::Failed(why.clone()),
-            None if self.writes_scene || !self.imports.is_empty() => SaveState::Writing,
+            None if self.scene.is_some() || !self.imports.is_empty() => SaveState::Writing,
             None => SaveState::Idle,
         }
     }
@@ -62,7 +75,7 @@ pub struct WrittenImport {
 }
 
 /// The scene's source before and after changed values were written into it.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Edited {
     /// The text that the file must have.
     pub before: Arc<str>,

@@ -74,15 +74,11 @@ impl Session {
         self.edit_file(&file, change);
     }
 
-    /// Writes the text of the shown file; for the scene, changed numbers too.
-    pub fn save_text(&mut self) {
-        self.save_shown(Saved::Numbers);
-    }
-
     /// Writes the text of the shown file; for the scene, `what` is written.
     pub fn save_shown(&mut self, what: Saved) {
+        self.saving.failure = None;
         match self.shown_file().clone() {
-            TabFile::Scene => self.save_to_file(what),
+            TabFile::Scene => self.save_scene(what),
             TabFile::Import(path) => self.save_import(&path),
             TabFile::Library(_) => {
                 self.messages.push("a file of the library cannot be changed".to_owned());
@@ -92,10 +88,11 @@ impl Session {
 
     /// Writes all edited files, and the changed numbers of the scene.
     pub fn save_all(&mut self) {
+        self.saving.failure = None;
         let imports: Vec<String> = self.tabs.edited().into_keys().collect();
         imports.iter().for_each(|path| self.save_import(path));
         if self.draft.is_edited() || self.param_values.changed_numbers() > 0 {
-            self.save_to_file(Saved::Numbers);
+            self.save_scene(Saved::Numbers);
         }
     }
 

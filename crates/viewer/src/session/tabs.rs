@@ -4,6 +4,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
+use std::time::Instant;
 
 use sdfc_ide::{Location, library_files};
 
@@ -108,12 +109,12 @@ impl Tabs {
         edited.map(|(path, draft)| (path.clone(), Arc::clone(draft.text()))).collect()
     }
 
-    /// Records the texts of imported files on disk.
-    pub fn set_files(&mut self, files: BTreeMap<String, Option<Arc<str>>>) {
+    /// Records the texts of imported files as they were read after a moment.
+    pub fn set_read(&mut self, files: BTreeMap<String, Option<Arc<str>>>, after: Instant) {
         for (path, file) in files {
             let draft = self.imports.entry(path).or_default();
             if let Some(file) = file {
-                draft.set_file(file);
+                draft.set_read(file, after);
             }
         }
     }
@@ -141,7 +142,7 @@ mod tests {
     fn edited_and_shown_imports_stay_when_the_scene_does_not_import_them() {
         let mut tabs = Tabs::default();
         let files = ["a.sdf", "b.sdf", "c.sdf"].map(|it| (it.to_owned(), Some("solid".into())));
-        tabs.set_files(files.into());
+        tabs.set_read(files.into(), Instant::now());
         tabs.edit("a.sdf", |draft| draft.set_text("region"));
         tabs.show(TabFile::Import("b.sdf".to_owned()));
         tabs.keep_imports(&TextsByPath::new());

@@ -66,6 +66,7 @@ impl Session {
             file,
             text: Arc::clone(self.shown_text()),
             drafts: self.tabs.edited(),
+            imports: self.diagnosed_imports.clone(),
             cursor,
         };
         if self.language_request.as_ref() != Some(&request) {
@@ -78,7 +79,8 @@ impl Session {
     pub fn answer_about_text(&self) -> Option<&LanguageAnswer> {
         let answer = self.language.as_ref()?;
         let file = self.shown_file().name(self.path());
-        let is_current = answer.request.file == file && answer.request.text == *self.shown_text();
+        let LanguageRequest { path, file: about, text, .. } = &answer.request;
+        let is_current = path == self.path() && *about == file && text == self.shown_text();
         is_current.then_some(answer)
     }
 
@@ -109,15 +111,13 @@ impl Session {
     }
 
     /// Makes a change of a file that one of the diagnostics proposes, and shows the file. Returns
-    /// false if the file has another text than the one that was diagnosed.
-    pub fn apply_fix(&mut self, name: &str, fix: &ShownFix) -> bool {
+    /// the texts before and after; `None` if the file has another text than the diagnosed one.
+    pub fn apply_fix(&mut self, name: &str, fix: &ShownFix) -> Option<[Arc<str>; 2]> {
         let file = self.file_named(name);
-        let Some(text) = self.text_of(&file).filter(|_| self.is_diagnosed(&file)) else {
-            return false;
-        };
-        let text = with_replacements(text, &fix.edits);
-        self.edit_file(&file, |draft| draft.set_text(&text));
+        let before = Arc::clone(self.text_of(&file).filter(|_| self.is_diagnosed(&file))?);
+        let after = with_replacements(&before, &fix.edits);
+        self.edit_file(&file, |draft| draft.set_text(&after));
         self.show_file(file);
-        true
+        Some([before, after.into()])
     }
 }

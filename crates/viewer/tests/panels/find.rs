@@ -38,7 +38,7 @@ fn matches_are_counted_and_stepped_through() {
     assert!(fixture.has("4 of 4"));
     fixture.click("Aa");
     assert!(fixture.has("of 3"));
-    fixture.click("\"w\"");
+    fixture.click("word");
     assert!(fixture.has("of 2"));
     type_into(&mut fixture, "find", "nothing");
     assert!(fixture.has("no match"));
@@ -90,4 +90,14 @@ fn a_selection_becomes_the_search_text() {
     fixture.harness.run_steps(3);
     let text = fixture.harness.state().opened().text().to_string();
     assert_eq!(text, BOXES.replace("box(1", "cube(1"));
+}
+
+#[test]
+fn the_search_opens_while_numbers_are_dragged() {
+    let mut fixture = Fixture::with_text(BOXES);
+    fixture.click("Drag numbers");
+    assert!(fixture.harness.query_by_role(Role::MultilineTextInput).is_none());
+    fixture.key(Modifiers::COMMAND, Key::F);
+    type_into(&mut fixture, "find", "box");
+    assert!(fixture.has("1 of 4"));
 }

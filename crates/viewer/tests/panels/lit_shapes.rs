@@ -34,6 +34,11 @@ fn the_cursor_in_a_call_lights_the_pixels_of_its_shapes() {
     assert_eq!(left_part(&mut fixture, at("sphere")), 0.0);
     assert_eq!(left_part(&mut fixture, at("1.5) |")), 0.0);
     assert_eq!(left_part(&mut fixture, at("box") + 2), 1.0);
+    // Without a cursor nothing is lit.
+    fixture.click("Drag numbers");
+    assert!(fixture.harness.state().opened().lit_mask().is_none());
+    fixture.click("Edit");
+    assert_eq!(left_part(&mut fixture, at("box") + 2), 1.0);
     // Without the keyboard in the editor nothing is lit.
     fixture.key(eframe::egui::Modifiers::NONE, Key::Escape);
     assert!(fixture.harness.state().opened().lit_mask().is_none());

@@ -117,10 +117,14 @@ fn errors_of_an_import_are_shown_in_its_tab_and_fixed_there() {
     fixture.click(&fix.title);
     fixture.until(|harness| harness.state().opened().diagnostics.errors() == 0);
     assert_eq!(**fixture.harness.state().opened().shown_text(), *TOOTH);
+    // The text was never typed, and the correction can be undone.
+    fixture.type_at_end("");
+    fixture.key(Modifiers::COMMAND, Key::Z);
+    assert_eq!(**fixture.harness.state().opened().shown_text(), *TOOTH.replace("box", "boxx"));
 }
 
 #[test]
-fn f12_goes_to_a_declaration_and_alt_left_back() {
+fn f12_goes_to_a_definition_and_alt_left_back() {
     let mut fixture = with_imports();
     cursor_to(&mut fixture, "gear(1)");
     fixture.key(Modifiers::NONE, Key::F12);

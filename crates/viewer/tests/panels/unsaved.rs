@@ -1,10 +1,20 @@
 //! Texts that are not saved, when the window is lost or replaced.
 
+use std::path::Path;
+
 use eframe::egui::{Context, Key, Modifiers};
 use egui_kittest::kittest::Queryable;
 use sdfc_viewer::app::App;
 
 use crate::fixture::{Fixture, SCENE};
+
+/// An app with the scene and the settings of a folder.
+fn app_in(folder: &Path) -> App {
+    let settings = Some(folder.join("view.json"));
+    let mut app = App::new(&Context::default(), &folder.join("scene.sdf"), settings).unwrap();
+    app.session().update_build(|build| build.on_cpu = true);
+    app
+}
 
 /// Another window of the same scene and settings.
 fn reopened(mut fixture: Fixture, rescues: bool) -> Fixture {
@@ -13,10 +23,7 @@ fn reopened(mut fixture: Fixture, rescues: bool) -> Fixture {
     }
     let Fixture { harness, folder } = fixture;
     drop(harness);
-    let settings = Some(folder.path().join("view.json"));
-    let mut app =
-        App::new(&Context::default(), &folder.path().join("scene.sdf"), settings).unwrap();
-    app.session().update_build(|build| build.on_cpu = true);
+    let app = app_in(folder.path());
     let mut fixture = Fixture::shown(app, folder);
     fixture.until(|harness| harness.state().picture_is_finished());
     fixture
@@ -70,4 +77,42 @@ fn a_rescued_text_does_not_overwrite_a_file_that_was_changed_since() {
     again.key(Modifiers::COMMAND, Key::S);
     assert!(again.has("not saved"));
     assert!(again.harness.state().opened().text().ends_with("// mine\n"));
+}
+
+#[test]
+fn text_survives_a_window_that_closes_unasked() {
+    let mut fixture = Fixture::new();
+    fixture.type_at_end("// typed\n");
+    // As when its device is lost.
+    fixture.harness.state_mut().close();
+    let mut again = reopened(fixture, false);
+    assert!(again.harness.state().opened().text().ends_with("// typed\n"));
+    again.request_close();
+    again.harness.get_by_label("Close without saving").click();
+    assert!(again.closes());
+    again.harness.state_mut().close();
+    let again = reopened(again, false);
+    assert_eq!(**again.harness.state().opened().text(), *SCENE);
+}
+
+#[test]
+fn a_second_window_without_edits_does_not_forget_the_texts_of_the_first() {
+    let mut fixture = Fixture::new();
+    let mut second = app_in(fixture.folder.path());
+    fixture.type_at_end("// typed\n");
+    fixture.harness.state_mut().rescue();
+    second.close();
+    let again = reopened(fixture, false);
+    assert!(again.harness.state().opened().text().ends_with("// typed\n"));
+}
+
+#[test]
+fn undo_brings_back_a_restored_text_that_was_reverted() {
+    let mut fixture = Fixture::new();
+    fixture.type_at_end("// typed\n");
+    let mut again = reopened(fixture, true);
+    again.click("Revert");
+    assert_eq!(**again.harness.state().opened().text(), *SCENE);
+    again.key(Modifiers::COMMAND, Key::Z);
+    assert_eq!(**again.harness.state().opened().text(), *format!("{SCENE}// typed\n"));
 }

@@ -25,7 +25,7 @@ impl ColorButton {
     /// Shows the button if the cursor is, or was last, in a colour of the shown text.
     pub fn show(&mut self, ui: &mut Ui, session: &mut Session, cursor: Option<usize>) {
         match cursor {
-            // While the colours of a new text are not known, the last one is as good.
+            // Keep the last colour until the colours of the new text are known.
             Some(cursor) if session.answer_about_text().is_some() => {
                 self.0 = color_at(session, cursor);
             }
@@ -42,7 +42,7 @@ impl ColorButton {
             return;
         }
         let rgba = color.to_srgba_unmultiplied().map(|part| f64::from(part) / 255.0);
-        // Written as it was: a literal, or a call of `rgb`.
+        // Keep the notation: a literal, or a call of `rgb`.
         let is_call = at.text.get(at.range.clone()).is_some_and(|it| !it.starts_with('#'));
         let written = color_presentations(rgba).into_iter().nth(usize::from(is_call));
         let Some(written) = written else { return };

@@ -3,9 +3,10 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use eframe::egui::{self, Id, Key, Modifiers, RichText, Ui};
+use eframe::egui::{self, Id, Key, Modifiers, Response, RichText, Ui};
 
 use super::text_state::select;
+use crate::app::shortcuts::egui_closes;
 use crate::app::theme;
 use crate::text_search::{MAX_MATCHES, Query, next_match, previous_match};
 
@@ -79,10 +80,8 @@ impl FindBar {
             return None;
         }
         self.search(text);
-        let egui_closes = egui::Popup::is_any_open(ui.ctx())
-            || ui.memory(|memory| memory.top_modal_layer().is_some());
-        let is_left =
-            !egui_closes && ui.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Escape));
+        let is_left = !egui_closes(ui.ctx())
+            && ui.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Escape));
         let mut request = None;
         ui.horizontal_wrapped(|ui| {
             let has_changed = self.query_field(ui);
@@ -121,17 +120,14 @@ impl FindBar {
     /// Returns true if the search was changed.
     fn query_field(&mut self, ui: &mut Ui) -> bool {
         let before = self.query.clone();
-        let width = (ui.available_width() - 110.0).clamp(60.0, 160.0);
-        let field = egui::TextEdit::singleline(&mut self.query.text).id(query_id());
-        let field = ui.add(field.hint_text("find").desired_width(width).return_key(None));
-        ui.ctx().accesskit_node_builder(query_id(), |node| node.set_label("find"));
+        let field = labelled_field(ui, query_id(), &mut self.query.text, "find");
         field.on_hover_text("The text to find. Enter shows the next match.");
         if std::mem::take(&mut self.takes_focus) {
             select(ui.ctx(), query_id(), &self.query.text, 0..self.query.text.len());
         }
         let case = ui.toggle_value(&mut self.query.match_case, "Aa");
         case.on_hover_text("Match case: A does not match a.");
-        let word = ui.toggle_value(&mut self.query.whole_word, "\"w\"");
+        let word = ui.toggle_value(&mut self.query.whole_word, "word");
         word.on_hover_text("Whole words: `box` does not match in `boxes`.");
         before != self.query
     }
@@ -139,13 +135,8 @@ impl FindBar {
     /// Returns a request if something is replaced.
     fn replace_row(&mut self, ui: &mut Ui, text: &Arc<str>, cursor: usize) -> Option<FindRequest> {
         ui.horizontal_wrapped(|ui| {
-            let width = (ui.available_width() - 110.0).clamp(60.0, 160.0);
-            let field = egui::TextEdit::singleline(&mut self.replacement).id(replacement_id());
-            let field = field.hint_text("replace with").desired_width(width).return_key(None);
-            let field = ui.add(field);
-            ui.ctx().accesskit_node_builder(replacement_id(), |node| {
-                node.set_label("replace with");
-            });
+            let id = replacement_id();
+            let field = labelled_field(ui, id, &mut self.replacement, "replace with");
             let has_focus = field.has_focus();
             field.on_hover_text("The text that replaces what is found. Enter replaces one match.");
             let any = !self.found.ranges.is_empty();
@@ -218,9 +209,18 @@ impl FindBar {
             (Some(index), count) if count < MAX_MATCHES => format!("{} of {count}", index + 1),
             (None, 1) => "1 match".to_owned(),
             (None, count) if count < MAX_MATCHES => format!("{count} matches"),
-            (_, count) => format!("more than {count} matches"),
+            (_, count) => format!("{count} or more matches"),
         }
     }
+}
+
+/// A field for a text of one line, with a hint that is also its label.
+fn labelled_field(ui: &mut Ui, id: Id, text: &mut String, hint: &str) -> Response {
+    let width = (ui.available_width() - 110.0).clamp(60.0, 160.0);
+    let field = egui::TextEdit::singleline(text).id(id).hint_text(hint);
+    let field = ui.add(field.desired_width(width).return_key(None));
+    ui.ctx().accesskit_node_builder(id, |node| node.set_label(hint));
+    field
 }
 
 fn has_focus(ui: &Ui, id: Id) -> bool {
@@ -247,4 +247,24 @@ fn step_by_keys(ui: &Ui) -> Option<i32> {
             in_query && pressed(Modifiers::NONE, Key::Enter) || pressed(Modifiers::NONE, Key::F3);
         next.then_some(1)
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_count_says_when_there_may_be_more_matches() {
+        let mut bar = FindBar::default();
+        bar.query.text = "a".to_owned();
+        let mut count = |matches: usize| {
+            bar.search(&"a".repeat(matches).into());
+            bar.count()
+        };
+        assert_eq!(
+            [0, 1, MAX_MATCHES - 1].map(&mut count),
+            ["no match", "1 match", "9999 matches"]
+        );
+        assert_eq!(count(MAX_MATCHES), "10000 or more matches");
+    }
 }

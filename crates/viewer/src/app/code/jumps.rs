@@ -1,4 +1,4 @@
-//! Jumps to declarations, and back.
+//! Jumps to definitions, and back.
 
 use std::ops::Range;
 
@@ -18,11 +18,11 @@ pub struct Jumps {
 }
 
 impl Jumps {
-    /// Goes to the declaration of the name at an offset of the shown text. `from` is the offset to
+    /// Goes to the definition of the name at an offset of the shown text. `from` is the offset to
     /// which [`back`](Self::back) returns.
     pub fn go_to_definition(&mut self, session: &mut Session, offset: usize, from: usize) {
         let Some(target) = target(session, offset) else {
-            let text = "there is no name with a declaration at the cursor";
+            let text = "there is no name with a definition at the cursor";
             return session.messages.push(text.to_owned());
         };
         if self.from.len() == MAX_JUMPS {
@@ -52,7 +52,7 @@ impl Jumps {
     }
 }
 
-/// The declaration of the name at an offset of the shown text.
+/// The definition of the name at an offset of the shown text.
 pub fn target(session: &Session, offset: usize) -> Option<(TabFile, Range<usize>)> {
     let location = definition(&session.answer_about_text()?.analysis, offset)?;
     Some((TabFile::of(&location, session.path()), location.range()))

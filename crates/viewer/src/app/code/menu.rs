@@ -21,7 +21,7 @@ pub fn show(ui: &mut Ui, session: &mut Session, editor: &mut CodeEditor) {
             editor.search(true, session);
         }
         ui.separator();
-        let help = "Go to the declaration of the name at the cursor, in an import or the library \
+        let help = "Go to the definition of the name at the cursor, in an import or the library \
                     too. Ctrl + click does the same.";
         if entry(ui, true, "Go to definition", "F12", help) {
             editor.go_to_definition(session);

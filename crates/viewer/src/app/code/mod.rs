@@ -12,7 +12,7 @@ mod number_drag;
 mod numbers;
 pub mod panel;
 mod tab_bar;
-mod text_state;
+pub mod text_state;
 
 pub use editor::CodeEditor;
 pub use text_state::move_editors;

@@ -24,6 +24,8 @@ struct Dragged {
     is_whole: bool,
     /// The text before.
     before: Arc<str>,
+    /// The text that the drag has made.
+    written: Arc<str>,
     /// The length of the drag to the right in points.
     points: f32,
     /// Where the number is now.
@@ -45,6 +47,8 @@ impl NumberDrag {
             return false;
         }
         let text = Arc::clone(session.shown_text());
+        // Text that was typed or read meanwhile would be overwritten.
+        self.0.take_if(|dragged| dragged.written != text);
         let under = at.filter(|_| ui.input(|input| input.modifiers.alt));
         let range = match &self.0 {
             Some(dragged) => dragged.range.clone(),
@@ -80,7 +84,8 @@ impl NumberDrag {
         let is_scene = *session.shown_file() == TabFile::Scene;
         let is_whole = number.decimals == 0 && is_scene && !is_live;
         let range = number.range.clone();
-        self.0 = Some(Dragged { number, is_whole, before: Arc::clone(text), points: 0.0, range });
+        let [before, written] = [text, text].map(Arc::clone);
+        self.0 = Some(Dragged { number, is_whole, before, written, points: 0.0, range });
     }
 
     /// Makes one step to undo of the drag.
@@ -89,7 +94,7 @@ impl NumberDrag {
         let after = session.shown_text();
         if *dragged.before != **after {
             record_change(ctx, id, [&dragged.before, after], dragged.range);
-            // So that Ctrl + Z undoes it.
+            // The editor needs the keyboard, or Ctrl + Z would not reach it.
             ctx.memory_mut(|memory| memory.request_focus(id));
         }
     }
@@ -104,6 +109,7 @@ impl Dragged {
         self.range = self.number.range.start..self.number.range.start + written.len();
         if text != **session.shown_text() {
             session.edit_shown(|draft| draft.set_text(&text));
+            self.written = Arc::clone(session.shown_text());
         }
     }
 }

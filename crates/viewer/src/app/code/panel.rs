@@ -1,13 +1,17 @@
 //! The panel with the scene's text, which can be edited, or whose numbers can be dragged.
 
-use eframe::egui::{RichText, Ui};
+use std::sync::Arc;
+
+use eframe::egui::{Key, RichText, Ui};
 
 use super::editor::CodeEditor;
+use super::text_state::{editor_id, record_replaced};
 use super::{menu, numbers, tab_bar};
 use crate::app::action::Action;
 use crate::app::{number_buttons, theme};
 use crate::session::Session;
 use crate::session::draft::Draft;
+use crate::session::save_state::Saved;
 use crate::session::tabs::TabFile;
 
 /// The longest text that can be edited in the window, in bytes. Longer ones are shown as rows.
@@ -33,6 +37,7 @@ pub fn show(
     ui.add_space(4.0);
     tab_bar::show(ui, session);
     let is_small = session.shown_text().len() <= MAX_EDITED_BYTES;
+    let mut discards = false;
     ui.horizontal_wrapped(|ui| {
         let before = *mode;
         let edits = ui.add_enabled_ui(is_small, |ui| {
@@ -50,6 +55,14 @@ pub fn show(
         if *session.shown_file() != TabFile::Scene {
             *mode = CodeMode::Edit;
         }
+        // The editor has the search.
+        if is_small
+            && ui.input(|it| {
+                it.modifiers.command && [Key::F, Key::H].iter().any(|key| it.key_pressed(*key))
+            })
+        {
+            *mode = CodeMode::Edit;
+        }
         if before == CodeMode::Numbers && *mode == CodeMode::Edit {
             session.write_numbers_into_text();
         }
@@ -57,7 +70,7 @@ pub fn show(
             menu::show(ui, session, editor);
             editor.color_button(ui, session);
         }
-        edited_state(ui, session);
+        discards |= edited_state(ui, session);
     });
     let changed = session.param_values.changed_numbers() > 0;
     if let Some(model) = session.model.clone()
@@ -66,56 +79,76 @@ pub fn show(
         number_buttons::show(ui, session, &model, actions);
     }
     if session.shown_draft().is_some_and(Draft::is_in_conflict) {
-        conflict(ui, session);
+        discards |= conflict(ui, session);
+    }
+    if discards {
+        discard(ui, session);
     }
     ui.separator();
     match mode {
         CodeMode::Edit if is_small => editor.show(ui, session),
-        CodeMode::Edit | CodeMode::Numbers => numbers::show(ui, session),
+        CodeMode::Edit | CodeMode::Numbers => {
+            editor.forget_cursor();
+            numbers::show(ui, session);
+        }
+    }
+    if discards {
+        // The editor needs the keyboard, or Ctrl + Z would not reach it. Until it was shown, the
+        // click on the button would take the keyboard away again.
+        let id = editor_id(session.path(), session.shown_file());
+        ui.memory_mut(|memory| memory.request_focus(id));
     }
 }
 
-/// Says whether the text is saved, with a button that saves it.
-fn edited_state(ui: &mut Ui, session: &mut Session) {
+/// Says whether the text is saved, with a button that saves it. Returns true if the user gives up
+/// the edited text.
+fn edited_state(ui: &mut Ui, session: &mut Session) -> bool {
     let Some(draft) = session.shown_draft() else {
-        let text = RichText::new("a file of the library, to read").small();
+        let text = RichText::new("library file, read-only").small();
         ui.label(text.color(theme::of(ui).weak));
-        return;
+        return false;
     };
     if !draft.is_edited() {
         let text = RichText::new("type to change the scene").small().color(theme::of(ui).weak);
         let help = "The text of the file. Edits in your own editor are followed, too.";
         ui.label(text).on_hover_text(help);
-        return;
+        return false;
     }
     let save = ui.small_button("Save");
     if save.on_hover_text("Write the text to its file (Ctrl+S).").clicked() {
-        session.save_text();
+        session.save_shown(Saved::All);
     }
     let revert = ui.small_button("Revert");
-    if revert.on_hover_text("Go back to the text of the file; Ctrl+Z undoes that.").clicked() {
-        session.edit_shown(Draft::discard);
-    }
+    let revert = revert.on_hover_text("Go back to the text of the file; Ctrl+Z undoes that.");
     ui.label(RichText::new("not saved").small().color(theme::of(ui).accent));
+    revert.clicked()
 }
 
-/// Asks what happens to a text that was edited in the window and in the file.
-fn conflict(ui: &mut Ui, session: &mut Session) {
+/// Goes back to the text of the shown file, in one step to undo.
+fn discard(ui: &Ui, session: &mut Session) {
+    let Some(draft) = session.shown_draft() else { return };
+    let [before, after] = [draft.text(), draft.file()].map(Arc::clone);
+    let id = editor_id(session.path(), session.shown_file());
+    record_replaced(ui.ctx(), id, [&before, &after]);
+    session.edit_shown(Draft::discard);
+}
+
+/// Asks what happens to a text that was edited in the window and in the file. Returns true if the
+/// user gives up the edited text.
+fn conflict(ui: &mut Ui, session: &mut Session) -> bool {
     let color = theme::of(ui).warning;
     ui.label(
         RichText::new("The file was changed outside, and this text is not saved.").color(color),
     );
-    ui.horizontal_wrapped(|ui| {
+    let buttons = ui.horizontal_wrapped(|ui| {
         let load = ui.small_button("Load the file");
-        if load
-            .on_hover_text("Show the file's text in place of this; Ctrl+Z undoes that.")
-            .clicked()
-        {
-            session.edit_shown(Draft::discard);
-        }
+        let help = "Show the file's text in place of this; Ctrl+Z undoes that.";
+        let load = load.on_hover_text(help);
         let keep = ui.small_button("Keep this text");
         if keep.on_hover_text("Saving this text then replaces the file's.").clicked() {
             session.edit_shown(Draft::keep);
         }
+        load.clicked()
     });
+    buttons.inner
 }

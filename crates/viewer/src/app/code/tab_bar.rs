@@ -29,7 +29,7 @@ fn tab(ui: &mut Ui, session: &mut Session, file: TabFile) {
     let help = match &file {
         TabFile::Scene => "The scene.",
         TabFile::Import(_) => "A file that the scene imports. Editing it compiles the scene.",
-        TabFile::Library(_) => "A file of sdfc's library, to read.",
+        TabFile::Library(_) => "A file of sdfc's library. It cannot be changed.",
     };
     let is_shown = *session.shown_file() == file;
     let label = ui.selectable_label(is_shown, RichText::new(title).color(color));

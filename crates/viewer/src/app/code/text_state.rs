@@ -7,6 +7,7 @@ use eframe::egui::text::{CCursor, CCursorRange};
 use eframe::egui::text_edit::TextEditState;
 use eframe::egui::{Context, Id};
 
+use crate::compile::text_diff::TextDiff;
 use crate::session::tabs::TabFile;
 
 /// The id of the editor of a file of a scene: each has its own cursor and undo history.
@@ -24,11 +25,16 @@ pub fn cursor_at(text: &str, byte: usize) -> CCursor {
     CCursor::new(text.char_indices().take_while(|(at, _)| *at < byte).count())
 }
 
-/// Selects a byte range of the text, and gives the editor the keyboard.
-pub fn select(ctx: &Context, id: Id, text: &str, range: Range<usize>) {
+/// Selects a byte range of the text.
+pub fn move_cursor(ctx: &Context, id: Id, text: &str, range: Range<usize>) {
     let mut state = TextEditState::load(ctx, id).unwrap_or_default();
     state.cursor.set_char_range(Some(cursors(text, range)));
     state.store(ctx, id);
+}
+
+/// Selects a byte range of the text, and gives the editor the keyboard.
+pub fn select(ctx: &Context, id: Id, text: &str, range: Range<usize>) {
+    move_cursor(ctx, id, text, range);
     ctx.memory_mut(|memory| memory.request_focus(id));
 }
 
@@ -46,6 +52,12 @@ pub fn record_change(ctx: &Context, id: Id, [before, after]: [&str; 2], selected
     state.cursor.set_char_range(Some(changed.0));
     state.set_undoer(undoer);
     state.store(ctx, id);
+}
+
+/// Records a change that was not typed as one step to undo, with the cursor behind what changed.
+pub fn record_replaced(ctx: &Context, id: Id, [before, after]: [&str; 2]) {
+    let end = TextDiff::new(before, after).new_end as usize;
+    record_change(ctx, id, [before, after], end..end);
 }
 
 /// Gives the editors in a new window the cursors and undo histories that they had in the old one.

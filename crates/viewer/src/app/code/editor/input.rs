@@ -13,7 +13,7 @@ use crate::session::Session;
 const INDENT: &str = "  ";
 
 impl CodeEditor {
-    /// F12 goes to a declaration, Alt + Left back. These work in the whole panel.
+    /// F12 goes to a definition, Alt + Left back. These work in the whole panel.
     pub(super) fn handle_jump_keys(&mut self, ui: &Ui, session: &mut Session) {
         let is_elsewhere = ui.ctx().text_edit_focused() && self.cursor.is_none();
         if is_elsewhere {

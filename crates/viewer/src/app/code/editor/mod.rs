@@ -16,7 +16,9 @@ use crate::app::code::highlighting::{LayoutCache, LayoutKey, Mark};
 use crate::app::code::hover_text::HoverPictures;
 use crate::app::code::jumps::{self, Jumps};
 use crate::app::code::number_drag::NumberDrag;
-use crate::app::code::text_state::{byte_of, cursor_at, editor_id, record_change, select};
+use crate::app::code::text_state::{
+    byte_of, cursor_at, editor_id, move_cursor, record_change, select,
+};
 use crate::app::theme;
 use crate::compile::diagnostics::ShownDiagnostic;
 use crate::scene::line_endings::{formatted, with_line_endings_of};
@@ -78,7 +80,7 @@ impl CodeEditor {
         self.list.typing = false;
     }
 
-    /// Goes to the declaration of the name at the cursor.
+    /// Goes to the definition of the name at the cursor.
     pub fn go_to_definition(&mut self, session: &mut Session) {
         let from = self.selected.start;
         self.jumps.go_to_definition(session, from, from);
@@ -92,6 +94,11 @@ impl CodeEditor {
     /// True if there is a jump to go back from.
     pub fn can_go_back(&self) -> bool {
         self.jumps.can_go_back()
+    }
+
+    /// Forgets the cursor while the editor is not shown.
+    pub fn forget_cursor(&mut self) {
+        self.cursor = None;
     }
 
     /// Shows the editor. What is typed becomes the shown text of the session.
@@ -115,7 +122,7 @@ impl CodeEditor {
                     let at = at.translate(output.galley_pos.to_vec2());
                     ui.scroll_to_rect(at.expand2(egui::vec2(0.0, 60.0)), None);
                 }
-                self.take_edit(&output, &text, session);
+                self.take_edit(ui.ctx(), &output, &text, session);
                 if has_focus && let Some(cursor) = output.cursor_range {
                     let below = output.galley.pos_from_cursor(cursor.primary).left_bottom();
                     self.show_list(ui, id, output.galley_pos + below.to_vec2(), session);
@@ -167,16 +174,22 @@ impl CodeEditor {
             .frame(egui::Frame::NONE)
             .code_editor()
             .desired_width(f32::INFINITY)
-            // So that a click below the text is one behind its end.
+            // The editor fills the panel, so a click below the text puts the cursor at its end.
             .desired_rows((height / row - 1.0).max(8.0) as usize)
             .layouter(&mut layouter);
         let output = edit.show(ui);
-        ui.ctx().accesskit_node_builder(id, |node| node.set_label("the scene's text"));
+        ui.ctx().accesskit_node_builder(id, |node| node.set_label("the text of the shown file"));
         output
     }
 
     /// Records the cursor and what was typed.
-    fn take_edit(&mut self, output: &TextEditOutput, text: &str, session: &mut Session) {
+    fn take_edit(
+        &mut self,
+        ctx: &egui::Context,
+        output: &TextEditOutput,
+        text: &str,
+        session: &mut Session,
+    ) {
         let before = self.cursor;
         self.cursor = output.cursor_range.map(|range| byte_of(text, range.primary.index.0));
         if let Some(range) = output.cursor_range {
@@ -184,8 +197,16 @@ impl CodeEditor {
             self.selected = byte_of(text, from.index.0)..byte_of(text, to.index.0);
         }
         if output.response.changed() {
-            let text = with_line_endings_of(session.shown_text(), text.to_owned());
-            session.edit_shown(|draft| draft.set_text(&text));
+            let before = Arc::clone(session.shown_text());
+            let edited = with_line_endings_of(&before, text.to_owned());
+            if edited != text {
+                // Each inserted or removed `\r` in front of the cursor moves it by a character.
+                let moved = |at: usize| with_line_endings_of(&before, text[..at].to_owned()).len();
+                self.cursor = self.cursor.map(moved);
+                self.selected = moved(self.selected.start)..moved(self.selected.end);
+                move_cursor(ctx, output.response.response.id, &edited, self.selected.clone());
+            }
+            session.edit_shown(|draft| draft.set_text(&edited));
             self.list.typing = true;
         } else if self.cursor != before {
             self.list.typing = false;
@@ -216,7 +237,7 @@ impl CodeEditor {
         }
     }
 
-    /// Describes what is under the pointer, and follows a click with Ctrl to its declaration.
+    /// Describes what is under the pointer, and follows a click with Ctrl to its definition.
     fn point_at(
         &mut self,
         ui: &Ui,
@@ -252,7 +273,7 @@ impl CodeEditor {
         if self.file != *session.shown_file() {
             self.file = session.shown_file().clone();
             (self.list, self.cursor, self.selected) = (CompletionList::default(), None, 0..0);
-            self.color = ColorButton::default();
+            (self.color, self.drag) = (ColorButton::default(), NumberDrag::default());
         }
         if let Some(range) = self.jumps.take_target(&self.file) {
             let text = session.shown_text();
