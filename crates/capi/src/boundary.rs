@@ -196,6 +196,16 @@ pub(crate) fn boxed<T>(call: impl FnOnce() -> Result<T, Failure>) -> *mut T {
     made
 }
 
+/// Runs a call and returns its string, which `sdfc_string_free` frees, or null if the call failed.
+pub(crate) fn string(call: impl FnOnce() -> Result<CString, Failure>) -> *mut c_char {
+    let mut made = std::ptr::null_mut();
+    guarded(|| {
+        made = call()?.into_raw();
+        Ok(())
+    });
+    made
+}
+
 /// Frees a result of [`boxed`]. Does nothing for null.
 ///
 /// # Safety

@@ -6,7 +6,9 @@ use std::path::Path;
 use sdfc::{MeasureOptions, MeshFormat, MeshOptions, MeshSize};
 use serde::Deserialize;
 
-use crate::boundary::{Failure, boxed, free, guarded, handle, json, pointer_into, store, text};
+use crate::boundary::{
+    Failure, boxed, free, guarded, handle, json, pointer_into, store, string, text,
+};
 use crate::bytes::Bytes;
 use crate::options::options;
 use crate::progress::{Progress, Reporter};
@@ -232,8 +234,7 @@ pub unsafe extern "C" fn sdfc_measure(
     progress: Progress,
     context: *mut c_void,
 ) -> *mut c_char {
-    let mut made = std::ptr::null_mut();
-    guarded(|| {
+    string(|| {
         // SAFETY: guaranteed by the caller, see the safety section of this function.
         let (scene, keys, reporter) = unsafe {
             let keys = self::options::<MeasureKeys>(options)?;
@@ -244,8 +245,6 @@ pub unsafe extern "C" fn sdfc_measure(
         let max_cells = keys.max_cells.unwrap_or(options.max_cells);
         let options = options.relative(relative).max_cells(max_cells);
         let mut report = |at: sdfc::MeshProgress| reporter.report(at.done, at.total);
-        made = json(&scene.scene.measure(&options, &mut report)?)?.into_raw();
-        Ok(())
-    });
-    made
+        json(&scene.scene.measure(&options, &mut report)?)
+    })
 }

@@ -28,19 +28,11 @@ pub struct Picture {
 struct PictureKeys {
     size: Option<[u32; 2]>,
     region: Option<[u32; 4]>,
-    backend: Option<Device>,
+    backend: Option<String>,
     method: Option<String>,
     samples: Option<u32>,
     isolines: Option<f64>,
     camera: Option<Camera>,
-}
-
-#[derive(Debug, Deserialize)]
-#[serde(rename_all = "lowercase")]
-enum Device {
-    Auto,
-    Gpu,
-    Cpu,
 }
 
 #[derive(Debug, Deserialize)]
@@ -77,11 +69,7 @@ impl Camera {
 
 impl PictureKeys {
     fn options(&self) -> Result<PictureOptions, Failure> {
-        let backend = match self.backend {
-            None | Some(Device::Auto) => Backend::Auto,
-            Some(Device::Gpu) => Backend::Gpu,
-            Some(Device::Cpu) => Backend::Cpu,
-        };
+        let backend = self.backend.as_ref().map(|name| name.parse::<Backend>());
         let method = self.method.as_ref().map(|name| name.parse::<Method>());
         let tile = |[x, y, width, height]: [u32; 4]| Tile { origin: [x, y], size: [width, height] };
         let options = PictureOptions::new();
@@ -89,7 +77,7 @@ impl PictureKeys {
         Ok(options
             .size(size)
             .region(self.region.map(tile))
-            .backend(backend)
+            .backend(backend.transpose().map_err(Failure::argument)?.unwrap_or_default())
             .method(method.transpose().map_err(Failure::argument)?)
             .samples(self.samples)
             .isolines(self.isolines)

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use sdfc::{CompileWithError, Compiler, FrameValues, Param, ParamKind};
 
 use crate::boundary::{
-    Failure, boxed, free, guarded, handle, handle_mut, json, slice, store, text,
+    Failure, boxed, free, guarded, handle, handle_mut, json, slice, store, string, text,
 };
 use crate::files::{CallbackResolver, Read};
 use crate::options::options;
@@ -156,8 +156,7 @@ pub unsafe extern "C" fn sdfc_scene_copy(scene: *const Scene) -> *mut Scene {
 /// `scene` is null or a valid scene.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdfc_scene_describe(scene: *const Scene) -> *mut c_char {
-    let mut made = std::ptr::null_mut();
-    guarded(|| {
+    string(|| {
         // SAFETY: guaranteed by the caller, see the safety section of this function.
         let Scene { scene, frame } = unsafe { handle(scene)? };
         let params = scene.params().iter().zip(&frame.params);
@@ -166,10 +165,8 @@ pub unsafe extern "C" fn sdfc_scene_describe(scene: *const Scene) -> *mut c_char
             "certified": scene.is_certified(),
             "planar": scene.is_planar(),
         });
-        made = json(&described)?.into_raw();
-        Ok(())
-    });
-    made
+        json(&described)
+    })
 }
 
 fn described(param: &Param, value: &[f64; 4]) -> serde_json::Value {

@@ -46,17 +46,12 @@ pub unsafe extern "C" fn sdfc_shader_write(
             };
             (handle(scene)?, [or(target, "wgsl")?, or(part, "field")?, or(prefix, "sdf_")?])
         };
-        let (target, emit) = (target_of(target)?, emit_of(part)?);
-        let stage = if target.has_stage(sdfc::Stage::Compute) {
-            sdfc::Stage::Compute
-        } else {
-            sdfc::Stage::Fragment
-        };
-        let prefix = prefix.to_owned();
+        let target: Target = target.parse().map_err(Failure::argument)?;
+        let emit: Emit = part.parse().map_err(Failure::argument)?;
         let options = ShaderOptions::new()
             .target(target)
             .emit(emit)
-            .stage(stage)
+            .stage(target.default_stage())
             .prefix(prefix)
             .group(group)
             .binding(binding);
@@ -151,20 +146,4 @@ pub unsafe extern "C" fn sdfc_shader_uniform(
 pub unsafe extern "C" fn sdfc_shader_free(shader: *mut Shader) {
     // SAFETY: guaranteed by the caller, see the safety section of this function.
     unsafe { free(shader) }
-}
-
-fn target_of(name: &str) -> Result<Target, Failure> {
-    let found = Target::ALL.into_iter().find(|target| target.name() == name);
-    found.ok_or_else(|| {
-        let names = Target::ALL.map(Target::name).join(", ");
-        Failure::argument(format!("unknown target `{name}`; the targets are {names}"))
-    })
-}
-
-fn emit_of(name: &str) -> Result<Emit, Failure> {
-    let found =
-        [Emit::Field, Emit::March, Emit::Render].into_iter().find(|emit| emit.name() == name);
-    found.ok_or_else(|| {
-        Failure::argument(format!("unknown part `{name}`; the parts are field, march, render"))
-    })
 }

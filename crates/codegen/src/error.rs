@@ -3,6 +3,7 @@
 use sdfc_graph::NodeId;
 use thiserror::Error as ThisError;
 
+use crate::options::Stage;
 use crate::target::Target;
 
 /// Why a program cannot become a shader.
@@ -59,6 +60,14 @@ pub enum Error {
         /// The missing feature.
         what: &'static str,
     },
+    /// The target's language lacks a stage.
+    #[error("{} has no {} stage", .target.name(), .stage.name())]
+    MissingStage {
+        /// The target.
+        target: Target,
+        /// The stage.
+        stage: Stage,
+    },
     /// A bind group or binding is greater than the target allows.
     #[error("{} counts groups and bindings up to 255, not {number}", .target.name())]
     BindingTooLarge {
@@ -87,6 +96,7 @@ impl Error {
             Self::BadPrefix(_)
             | Self::Planar(_)
             | Self::Unsupported { .. }
+            | Self::MissingStage { .. }
             | Self::BindingTooLarge { .. } => true,
             Self::NothingDrawn
             | Self::MissingRoot(_)

@@ -48,6 +48,7 @@
 //! loop is unrolled, so drivers take long over thousands of primitives that are not alike.
 
 mod assemble;
+mod by_name;
 mod error;
 mod link;
 mod lower;
@@ -66,6 +67,7 @@ pub use assemble::picture::{
     render_module_with_camera,
 };
 pub use assemble::shadertoy::shadertoy_module;
+pub use by_name::{UnknownName, by_name};
 pub use error::Error;
 pub use options::{FieldOptions, Lists, MAX_CONSTANT_LIST, PictureOptions, Stage};
 pub use reflection::{

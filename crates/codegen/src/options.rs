@@ -1,6 +1,10 @@
 //! Options of shaders for other engines.
 
+use std::str::FromStr;
+
 use sdfc_march::Method;
+
+use crate::by_name::{UnknownName, by_name};
 
 /// The stages of a picture's shader.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -16,12 +20,30 @@ impl Stage {
     /// Both stages, the default first.
     pub const ALL: [Self; 2] = [Self::Compute, Self::Fragment];
 
-    /// The stage's name in messages.
+    /// The stage's name on the command line.
     pub fn name(self) -> &'static str {
         match self {
-            Self::Compute => "compute stage",
-            Self::Fragment => "fragment stage",
+            Self::Compute => "compute",
+            Self::Fragment => "fragment",
         }
+    }
+
+    /// One sentence about the stage.
+    pub fn summary(self) -> &'static str {
+        match self {
+            Self::Compute => "A compute stage that writes pixels into a buffer",
+            Self::Fragment => {
+                "A fragment stage, with a vertex stage for a triangle over the target"
+            }
+        }
+    }
+}
+
+impl FromStr for Stage {
+    type Err = UnknownName;
+
+    fn from_str(name: &str) -> Result<Self, UnknownName> {
+        by_name("stage", name, &Self::ALL, Self::name)
     }
 }
 

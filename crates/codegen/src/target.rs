@@ -1,5 +1,8 @@
 //! The languages that shaders are written in.
 
+use std::str::FromStr;
+
+use crate::by_name::{UnknownName, by_name};
 use crate::options::{Lists, Stage};
 
 /// A language that shaders are written in.
@@ -40,6 +43,19 @@ impl Target {
         }
     }
 
+    /// One sentence about the target.
+    pub fn summary(self) -> &'static str {
+        match self {
+            Self::Wgsl => "WGSL, for WebGPU",
+            Self::Glsl => "GLSL 4.50",
+            Self::GlslEs => "GLSL ES 3.00, for WebGL 2",
+            Self::Hlsl => "HLSL for DirectX, shader model 5.1",
+            Self::Msl => "Metal Shading Language 2.1",
+            Self::Spirv => "SPIR-V 1.3 for Vulkan",
+            Self::Shadertoy => "A complete shader to paste on shadertoy.com",
+        }
+    }
+
     /// Returns true if buffers belong to bind groups.
     pub fn has_groups(self) -> bool {
         match self {
@@ -72,12 +88,25 @@ impl Target {
         }
     }
 
+    /// The stage of a picture's shader, unless another one is asked for.
+    pub fn default_stage(self) -> Stage {
+        if self.has_stage(Stage::Compute) { Stage::Compute } else { Stage::Fragment }
+    }
+
     /// Returns true if the first row that a fragment stage draws is the lowest.
     pub fn counts_rows_upwards(self) -> bool {
         match self {
             Self::Glsl | Self::GlslEs | Self::Shadertoy => true,
             Self::Wgsl | Self::Hlsl | Self::Msl | Self::Spirv => false,
         }
+    }
+}
+
+impl FromStr for Target {
+    type Err = UnknownName;
+
+    fn from_str(name: &str) -> Result<Self, UnknownName> {
+        by_name("target", name, &Self::ALL, Self::name)
     }
 }
 

@@ -235,7 +235,7 @@ fn keywords_of_a_language_are_reflected_as_they_are_written() {
 fn what_a_language_cannot_hold_is_refused() {
     let picture = render_module(&sphere(), Method::Auto).expect("links");
     let target = Target::GlslEs;
-    let refused = Error::Unsupported { target, what: "compute stage" };
+    let refused = Error::MissingStage { target, stage: Stage::Compute };
     assert_eq!(picture.write(target, ""), Err(refused));
 
     let field = field_module(&sphere(), &FieldOptions::default()).expect("lowers");

@@ -50,6 +50,12 @@ pub(crate) fn check(bounds: [[f64; 3]; 2], error: f64) -> Result<(), MeshError> 
     if !(error > 0.0 && error.is_finite()) {
         return Err(MeshError::Error(error));
     }
+    let longest = (0..3).map(|axis| bounds[1][axis] - bounds[0][axis]).fold(0.0, f64::max);
+    // Such an error allows a mesh that misses the whole scene. A scene without a size has its own
+    // message.
+    if longest > 0.0 && error > longest {
+        return Err(MeshError::TooCoarse { error, longest });
+    }
     Ok(())
 }
 

@@ -1,4 +1,4 @@
-//! What is known about meshes and contours, as JSON states it.
+//! Reports about meshes and contours, which programs write as JSON.
 
 use serde::Serialize;
 
@@ -6,7 +6,7 @@ use crate::contour::Contour;
 use crate::plane::Plane;
 use crate::surface::{Mesh, MeshCertificate};
 
-/// What is known about a mesh, made by [`Mesh::report`]. Lengths are in scene units.
+/// A report about a mesh. [`Mesh::report`] makes it. Lengths are in scene units.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct MeshReport<'a> {
@@ -26,7 +26,7 @@ pub struct MeshReport<'a> {
     pub certificate: &'a MeshCertificate,
 }
 
-/// A contour and what is known about it, made by [`Contour::report`]. Lengths are in scene units.
+/// A contour with a report about it. [`Contour::report`] makes it. Lengths are in scene units.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct ContourReport<'a> {
@@ -46,7 +46,7 @@ pub struct ContourReport<'a> {
 }
 
 impl Mesh {
-    /// Returns what is known about the mesh, to write as JSON.
+    /// Returns a report about the mesh, to write as JSON.
     pub fn report(&self) -> MeshReport<'_> {
         MeshReport {
             vertices: self.vertices.len(),
@@ -61,7 +61,7 @@ impl Mesh {
 }
 
 impl Contour {
-    /// Returns the contour in a plane and what is known about it, to write as JSON.
+    /// Returns the contour in a plane with a report about it, to write as JSON.
     pub fn report(&self, plane: &Plane) -> ContourReport<'_> {
         ContourReport {
             origin: plane.at([0.0; 2]),

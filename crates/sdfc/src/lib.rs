@@ -109,7 +109,7 @@ pub use uniforms::uniform_bytes;
 pub use sdfc_analyze::LoopStrategy;
 pub use sdfc_codegen::{
     Buffer, BufferRole, Code, EntryStage, FieldOptions, Lists, Member, Reflection, Shader, Stage,
-    Target, Written,
+    Target, UnknownName, Written,
 };
 pub use sdfc_diagnostics::{Diagnostic, FileId, LineColumn, Located, Severity, Sources, Span};
 pub use sdfc_graph::eval::{FieldSample, FrameValues};

@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 
 use sdfc_graph::eval::FrameValues;
-use sdfc_mesh::{Contour, Mesh, MeshError, Plane, Progress};
+use sdfc_mesh::{Contour, Mesh, Plane, Progress};
 
 use crate::error::Error;
 use crate::scene::Scene;
@@ -134,17 +134,13 @@ impl Scene {
     ) -> Result<(FrameValues, sdfc_mesh::MeshOptions), Error> {
         let frame = options.frame.clone().unwrap_or_else(|| self.defaults());
         let bounds = self.filled_bounds(&frame)?;
-        let side = |axis: usize| bounds[1][axis] - bounds[0][axis];
-        let longest = side(0).max(side(1)).max(side(2));
         let error = match options.error {
             MeshSize::Length(length) => length,
-            MeshSize::Relative(fraction) => fraction * longest,
+            MeshSize::Relative(fraction) => {
+                let side = |axis: usize| bounds[1][axis] - bounds[0][axis];
+                fraction * side(0).max(side(1)).max(side(2))
+            }
         };
-        // Such an error allows a mesh that misses the whole scene. A scene without a size has its
-        // own message.
-        if longest > 0.0 && longest.is_finite() && error > longest {
-            return Err(MeshError::TooCoarse { error, longest }.into());
-        }
         let options = sdfc_mesh::MeshOptions::new(bounds, error).max_cells(options.max_cells);
         Ok((frame, options))
     }

@@ -1,10 +1,11 @@
 //! Draws pictures of a scene, on the GPU or the CPU.
 
 use std::borrow::Cow;
+use std::str::FromStr;
 use std::time::Instant;
 
 use sdfc_analyze::prepare_with;
-use sdfc_codegen::{render_module, render_module_with_camera};
+use sdfc_codegen::{UnknownName, by_name, render_module, render_module_with_camera};
 use sdfc_graph::Program;
 use sdfc_graph::eval::FrameValues;
 use sdfc_march::Method;
@@ -29,6 +30,40 @@ pub enum Backend {
     Gpu,
     /// The CPU.
     Cpu,
+}
+
+impl Backend {
+    /// All backends.
+    pub const ALL: [Self; 3] = [Self::Auto, Self::Gpu, Self::Cpu];
+
+    /// The backend's name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Auto => "auto",
+            Self::Gpu => "gpu",
+            Self::Cpu => "cpu",
+        }
+    }
+
+    /// What draws.
+    pub fn summary(self) -> &'static str {
+        match self {
+            Self::Auto => {
+                "The GPU if there is one, otherwise the CPU. The CPU also draws long formulas that \
+                 a software driver would draw more slowly"
+            }
+            Self::Gpu => "The GPU",
+            Self::Cpu => "The CPU",
+        }
+    }
+}
+
+impl FromStr for Backend {
+    type Err = UnknownName;
+
+    fn from_str(name: &str) -> Result<Self, UnknownName> {
+        by_name("backend", name, &Self::ALL, Self::name)
+    }
 }
 
 /// Options of [`Scene::render`] and [`Scene::painter`].

@@ -1,8 +1,10 @@
 //! Writes a scene as a shader.
 
+use std::str::FromStr;
+
 use sdfc_codegen::{
-    FieldOptions, PictureOptions, Shader, Stage, Target, Written, field_module, march_module,
-    picture_module, render_module, shadertoy_module,
+    FieldOptions, PictureOptions, Shader, Stage, Target, UnknownName, Written, by_name,
+    field_module, march_module, picture_module, render_module, shadertoy_module,
 };
 use sdfc_march::Method;
 use sdfc_render::{Tile, View, view_bytes};
@@ -62,13 +64,38 @@ impl Default for ShaderOptions {
 }
 
 impl Emit {
-    /// Name of the part on the command line.
+    /// All parts.
+    pub const ALL: [Self; 3] = [Self::Field, Self::March, Self::Render];
+
+    /// The part that is written in a language unless another one is asked for.
+    pub fn default_for(target: Target) -> Self {
+        if target == Target::Shadertoy { Self::Render } else { Self::Field }
+    }
+
+    /// The part's name on the command line.
     pub fn name(self) -> &'static str {
         match self {
             Self::Field => "field",
             Self::March => "march",
             Self::Render => "render",
         }
+    }
+
+    /// One sentence about the part.
+    pub fn summary(self) -> &'static str {
+        match self {
+            Self::Field => "Functions for distance, gradient and material",
+            Self::March => "The same, and a ray method",
+            Self::Render => "A complete shader that draws pictures",
+        }
+    }
+}
+
+impl FromStr for Emit {
+    type Err = UnknownName;
+
+    fn from_str(name: &str) -> Result<Self, UnknownName> {
+        by_name("part", name, &Self::ALL, Self::name)
     }
 }
 
@@ -131,11 +158,7 @@ impl ShaderOptions {
                 words += &format!(" --{name} {value}");
             }
         };
-        let stage = match stage {
-            Stage::Compute => "compute",
-            Stage::Fragment => "fragment",
-        };
-        add("stage", &stage, *emit == Emit::Render);
+        add("stage", &stage.name(), *emit == Emit::Render);
         if let Some(method) = method {
             add("march", method, *emit != Emit::Field);
         }
@@ -204,38 +227,34 @@ impl Scene {
             return Err(Error::Binding { number, limit: MAX_BINDING });
         }
         if options.emit == Emit::Render && !target.has_stage(stage) {
-            let what = stage.name();
-            return Err(sdfc_codegen::Error::Unsupported { target, what }.into());
+            return Err(sdfc_codegen::Error::MissingStage { target, stage }.into());
         }
-        let lists = target.lists();
         if self.is_planar() && options.emit == Emit::March {
             return Err(Error::Planar("the ray method"));
         }
-        let functions = || {
-            let prefix = prefix.clone();
-            FieldOptions { prefix, group, binding, lists, ..FieldOptions::default() }
+        let lists = target.lists();
+        let functions = FieldOptions {
+            prefix: prefix.clone(),
+            group,
+            binding,
+            lists,
+            ..FieldOptions::default()
         };
+        if options.emit == Emit::Field {
+            return Ok(field_module(&self.program, &functions)?);
+        }
         // The choice of a method may trace rays on the CPU. A field does without.
-        let marched = || (self.with_bounds_for(&self.program, method), self.marched_by(method));
-        let shader = match options.emit {
-            Emit::Field => field_module(&self.program, &functions())?,
-            Emit::March => {
-                let (program, method) = marched();
-                march_module(&program, method, &functions())?
-            }
-            Emit::Render if target == Target::Shadertoy => {
-                let (program, method) = marched();
-                shadertoy_module(&program, method, &self.default_view()?)?
-            }
-            Emit::Render => {
-                let (program, method) = marched();
-                let rows_up = target.counts_rows_upwards();
-                let options =
-                    PictureOptions { method, stage, rows_up, prefix, group, binding, lists };
-                picture_module(&program, &options)?
-            }
-        };
-        Ok(shader)
+        let program = self.with_bounds_for(&self.program, method);
+        let method = self.marched_by(method);
+        if options.emit == Emit::March {
+            return Ok(march_module(&program, method, &functions)?);
+        }
+        if target == Target::Shadertoy {
+            return Ok(shadertoy_module(&program, method, &self.default_view()?)?);
+        }
+        let rows_up = target.counts_rows_upwards();
+        let options = PictureOptions { method, stage, rows_up, prefix, group, binding, lists };
+        Ok(picture_module(&program, &options)?)
     }
 
     /// The contents of the view buffer at the params' defaults, for a picture of [`VIEW_SIZE`].

@@ -1,6 +1,8 @@
 //! The options of a page.
 
 use std::collections::BTreeMap;
+use std::fmt::Display;
+use std::str::FromStr;
 
 use sdfc::{CompileValues, Emit, Method, Resolver, ShaderOptions, Stage, Target};
 use serde::{Deserialize, Deserializer, de::Error};
@@ -11,11 +13,13 @@ use serde::{Deserialize, Deserializer, de::Error};
 pub(crate) struct Options {
     /// The name of the scene in messages.
     pub name: String,
-    #[serde(deserialize_with = "target")]
-    target: Target,
-    emit: Option<Part>,
-    stage: Option<Form>,
-    #[serde(deserialize_with = "method")]
+    #[serde(deserialize_with = "named")]
+    target: Option<Target>,
+    #[serde(deserialize_with = "named")]
+    emit: Option<Emit>,
+    #[serde(deserialize_with = "named")]
+    stage: Option<Stage>,
+    #[serde(deserialize_with = "named")]
     march: Option<Method>,
     prefix: Option<String>,
     group: Option<u32>,
@@ -34,7 +38,7 @@ impl Default for Options {
     fn default() -> Self {
         Self {
             name: "scene.sdf".to_owned(),
-            target: Target::Wgsl,
+            target: None,
             emit: None,
             stage: None,
             march: None,
@@ -49,42 +53,14 @@ impl Default for Options {
     }
 }
 
-#[derive(Clone, Copy, Debug, Deserialize)]
-#[serde(rename_all = "lowercase")]
-enum Part {
-    Field,
-    March,
-    Render,
-}
-
-#[derive(Clone, Copy, Debug, Deserialize)]
-#[serde(rename_all = "lowercase")]
-enum Form {
-    Compute,
-    Fragment,
-}
-
 impl Options {
     pub fn shader(&self) -> ShaderOptions {
-        let target = self.target;
-        let emit = match self.emit {
-            Some(Part::Field) => Emit::Field,
-            Some(Part::March) => Emit::March,
-            Some(Part::Render) => Emit::Render,
-            None if target == Target::Shadertoy => Emit::Render,
-            None => Emit::Field,
-        };
-        let stage = match self.stage {
-            Some(Form::Compute) => Stage::Compute,
-            Some(Form::Fragment) => Stage::Fragment,
-            None if target.has_stage(Stage::Compute) => Stage::Compute,
-            None => Stage::Fragment,
-        };
         let standard = ShaderOptions::default();
+        let target = self.target.unwrap_or(standard.target);
         ShaderOptions::new()
             .target(target)
-            .emit(emit)
-            .stage(stage)
+            .emit(self.emit.unwrap_or(Emit::default_for(target)))
+            .stage(self.stage.unwrap_or(target.default_stage()))
             .method(self.march)
             .prefix(self.prefix.clone().unwrap_or(standard.prefix))
             .group(self.group.unwrap_or(standard.group))
@@ -121,18 +97,14 @@ fn values<'a, D: Deserializer<'a>>(deserializer: D) -> Result<CompileValues, D::
     found.into_iter().map(lanes).collect()
 }
 
-fn method<'a, D: Deserializer<'a>>(deserializer: D) -> Result<Option<Method>, D::Error> {
+/// Reads the name of a value; null is none.
+fn named<'a, T, D>(deserializer: D) -> Result<Option<T>, D::Error>
+where
+    T: FromStr<Err: Display>,
+    D: Deserializer<'a>,
+{
     let name = Option::<String>::deserialize(deserializer)?;
     name.map(|name| name.parse().map_err(D::Error::custom)).transpose()
-}
-
-fn target<'a, D: Deserializer<'a>>(deserializer: D) -> Result<Target, D::Error> {
-    let name = String::deserialize(deserializer)?;
-    let names = Target::ALL.map(Target::name);
-    let found = Target::ALL.into_iter().find(|target| target.name() == name);
-    found.ok_or_else(|| {
-        D::Error::custom(format!("unknown target `{name}`; the targets are {}", names.join(", ")))
-    })
 }
 
 /// The files in the options of a page.

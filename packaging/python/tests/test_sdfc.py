@@ -356,8 +356,8 @@ class Meshes(unittest.TestCase):
             self.assertIn("<svg", (Path(folder) / "a.svg").read_text())
         with self.assertRaisesRegex(sdfc.ArgumentError, "meets no inside"):
             sdfc.compile("sphere(1)").contour([1, 0, 0], 2)
-            with self.assertRaisesRegex(sdfc.ArgumentError, "noext: contours are"):
-                contour.save(Path(folder) / "noext")
+        with self.assertRaisesRegex(sdfc.ArgumentError, "noext: contours are"):
+            contour.save(Path(folder) / "noext")
         with self.assertRaisesRegex(sdfc.ArgumentError, "plane z=0: state no other plane"):
             sdfc.compile("circle(1)").contour([1, 0, 0])
 

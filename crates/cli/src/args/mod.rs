@@ -13,7 +13,7 @@ use clap::{Parser, Subcommand, ValueEnum};
 pub use compile::Compile;
 pub use geometry::{Bake, Contour, Exactness, Measure, Mesh};
 pub use measurement::{Bench, Cache, Chart, Tune};
-pub use render::{Backend, Join, Render};
+pub use render::{Join, Render};
 pub use values::Assignment;
 use values::Params;
 

@@ -3,10 +3,10 @@
 use std::path::PathBuf;
 
 use clap::ValueEnum;
-use sdfc::Method;
+use sdfc::{Backend, Method};
 use sdfc_render::MAX_SAMPLES;
 
-use super::values::{LiveLiterals, Params, finite, methods, size};
+use super::values::{LiveLiterals, Params, finite, methods, named, size};
 use crate::farm::options::Farm;
 use crate::sequence::{self, Frames};
 
@@ -26,7 +26,8 @@ pub struct Render {
     #[arg(long, value_name = "METHOD", value_parser = methods())]
     pub march: Option<Method>,
     /// Device that draws
-    #[arg(long, value_enum, default_value_t)]
+    #[arg(long, default_value = Backend::Auto.name(),
+          value_parser = named::<Backend>(Backend::ALL.map(|it| [it.name(), it.summary()])))]
     pub backend: Backend,
     /// When to turn similar parts of the scene into loops
     #[arg(long, value_enum, default_value_t, value_name = "WHEN")]
@@ -84,19 +85,6 @@ pub struct Join {
     /// Join parts that were drawn on different devices, although borders may be visible
     #[arg(long)]
     pub any_device: bool,
-}
-
-/// The device that draws.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
-pub enum Backend {
-    /// The GPU if there is one, otherwise the CPU. The CPU also draws long formulas that a software
-    /// driver would draw more slowly
-    #[default]
-    Auto,
-    /// The GPU
-    Gpu,
-    /// The CPU
-    Cpu,
 }
 
 /// When similar parts of a scene become loops.

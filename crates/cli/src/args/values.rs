@@ -1,5 +1,8 @@
 //! Parses values of arguments.
 
+use std::error::Error;
+use std::str::FromStr;
+
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use sdfc::{Method, Plane};
 use sdfc_lang::settings::RAY_METHODS;
@@ -42,6 +45,18 @@ pub struct Assignment {
     pub name: String,
     /// The value, as written.
     pub value: String,
+}
+
+/// Parses one of some names. Each has a summary for the help.
+pub(super) fn named<T>(
+    names: impl IntoIterator<Item = [&'static str; 2]>,
+) -> impl TypedValueParser<Value = T>
+where
+    T: FromStr<Err: Error + Send + Sync> + Clone + Send + Sync + 'static,
+{
+    let possible = |[name, summary]: [&'static str; 2]| PossibleValue::new(name).help(summary);
+    let possible = names.into_iter().map(possible);
+    PossibleValuesParser::new(possible).try_map(|name| name.parse::<T>())
 }
 
 /// Parses the name of any ray method. The help lists those for users.

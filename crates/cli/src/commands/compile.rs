@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use sdfc::{Emit, ShaderOptions, Stage, Target};
+use sdfc::{Emit, ShaderOptions, Target};
 
 use crate::args::Compile;
 use crate::console::Console;
@@ -47,13 +47,9 @@ pub fn run(args: &Compile, console: &Console) -> Result<(), Failure> {
 ///
 /// An option does not apply to the target or the part.
 fn options(args: &Compile) -> Result<ShaderOptions, Failure> {
-    let target = Target::from(args.target);
+    let target = args.target;
     let is_toy = target == Target::Shadertoy;
-    let emit = match args.emit {
-        Some(emit) => emit.into(),
-        None if is_toy => Emit::Render,
-        None => Emit::Field,
-    };
+    let emit = args.emit.unwrap_or(Emit::default_for(target));
     let name = target.name();
     let refusals = [
         (
@@ -77,13 +73,11 @@ fn options(args: &Compile) -> Result<ShaderOptions, Failure> {
     if let Some((_, why)) = refusals.into_iter().find(|refusal| refusal.0) {
         return Err(Failure::Call(why));
     }
-    let has_compute = target.has_stage(Stage::Compute);
-    let stage = if has_compute { Stage::Compute } else { Stage::Fragment };
     let defaults = ShaderOptions::default();
     Ok(ShaderOptions::new()
         .target(target)
         .emit(emit)
-        .stage(args.stage.map_or(stage, Stage::from))
+        .stage(args.stage.unwrap_or(target.default_stage()))
         .method(args.march)
         .prefix(args.prefix.clone().unwrap_or(defaults.prefix))
         .group(args.group.unwrap_or(defaults.group))

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use sdfc::{Error, FrameValues, Painter, Picture, PictureOptions, Scene, Tile};
 use sdfc_render::{Animation, Raster, RasterKind, RenderError};
 
-use crate::args::{Backend, Render};
+use crate::args::Render;
 use crate::console::{Console, Progress};
 use crate::failure::Failure;
 use crate::farm::options::ProgressForm;
@@ -199,11 +199,7 @@ fn options(args: &Render) -> PictureOptions {
     PictureOptions::new()
         .size(args.size)
         .method(args.march)
-        .backend(match args.backend {
-            Backend::Auto => sdfc::Backend::Auto,
-            Backend::Gpu => sdfc::Backend::Gpu,
-            Backend::Cpu => sdfc::Backend::Cpu,
-        })
+        .backend(args.backend)
         .samples(args.samples)
         .isolines(args.isolines)
 }

@@ -12,6 +12,7 @@ use super::common::{WrittenModule, bindings, checked_u8, one_line, refused, vali
 use crate::error::Error;
 use crate::link::template::find_function;
 use crate::names::final_names;
+use crate::options::Stage;
 use crate::reflection::{Entry, EntryStage};
 use crate::target::{Code, Target};
 
@@ -31,7 +32,7 @@ pub(super) fn glsl(
         return glsl_stage(target, version, flags, &module, &info, comment);
     };
     if target == Target::GlslEs && entry.stage == ShaderStage::Compute {
-        return Err(Error::Unsupported { target, what: "compute stage" });
+        return Err(Error::MissingStage { target, stage: Stage::Compute });
     }
     glsl_stage(target, version, back::glsl::WriterFlags::empty(), module, info, comment)
 }

@@ -202,7 +202,10 @@ impl ExportDialog {
             labelled(ui, "stage", |ui| {
                 for stage in [Stage::Compute, Stage::Fragment] {
                     let there = self.target.has_stage(stage);
-                    let button = egui::Button::selectable(self.stage == stage, stage.name());
+                    let button = egui::Button::selectable(
+                        self.stage == stage,
+                        format!("{} stage", stage.name()),
+                    );
                     let button = ui
                         .add_enabled(there, button)
                         .on_hover_text("The pipeline stage that runs the shader.");
