@@ -186,7 +186,10 @@ fn unknown_options_and_values_are_errors() {
     };
     assert!(render("{").contains("options: "));
     assert!(render("{ \"sise\": [3, 4] }").contains("unknown field `sise`"));
-    assert!(render("{ \"backend\": \"abacus\" }").contains("unknown backend `abacus`; the backends are auto, gpu, cpu"));
+    assert!(
+        render("{ \"backend\": \"abacus\" }")
+            .contains("unknown backend `abacus`; the backends are auto, gpu, cpu")
+    );
     assert!(render("{ \"backend\": \"cpu\", \"size\": [0, 4] }").contains("0x4"));
     assert!(render("{ \"method\": \"magic\" }").contains("magic"));
     assert!(render("{ \"camera\": { \"eye\": [0, 0, 3], \"fov\": 4 } }").contains("fov"));

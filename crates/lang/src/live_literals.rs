@@ -67,12 +67,10 @@ pub(crate) fn elaborate(
             facts = learned;
             continue;
         }
-        return match elaborated {
-            Some(elaborated) => {
-                (Some(Elaborated { live_literals: literals, ..elaborated }), plain.1)
-            }
-            None => plain,
-        };
+        let Some(elaborated) = elaborated else { return plain };
+        let as_written = plain.0.map(|plain| Box::new(plain.scene));
+        let live = Elaborated { live_literals: literals, as_written, ..elaborated };
+        return (Some(live), plain.1);
     }
     plain
 }

@@ -131,11 +131,18 @@ impl Scene {
     /// Lowest and highest corner of what a camera looks at in a scene that states none, at one
     /// frame: of all shapes, but without unbounded ones, such as a floor, if there are others.
     pub fn focus_at(&self, frame: &FrameValues) -> Option<[[f64; 3]; 2]> {
-        focus_at_one_frame(&self.elaborated.scene, frame)
+        let Elaborated { scene, live_literals, as_written, .. } = &self.elaborated;
+        // A clause that reads the bounds of a shape has their values for all values of the live
+        // literals, which are wider than those for constants.
+        let is_written =
+            |it: &LiveLiteral| frame.params.get(it.param).is_some_and(|value| value[0] == it.value);
+        let as_written = as_written.as_deref().filter(|_| live_literals.iter().all(is_written));
+        focus_at_one_frame(as_written.unwrap_or(scene), frame)
     }
 
     /// The camera of a frame, for a picture whose width is `aspect` times its height: the scene's,
-    /// or one that sees the whole scene. It is the same with and without live literals.
+    /// or one that sees the whole scene. With live literals that have the values in the source, it
+    /// is the same as without.
     ///
     /// # Errors
     ///

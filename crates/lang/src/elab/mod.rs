@@ -100,8 +100,9 @@ pub(crate) fn elaborate_with(
     let declared = definitions::declared(program, &elaborator.definitions);
     let Elaborator { soft_shadows, sites, claims, diagnostics, literals, structural, .. } =
         elaborator;
-    let live_literals = Vec::new();
-    let elaborated = Elaborated { scene, sites, live_literals, declared, claims, soft_shadows };
+    let (live_literals, as_written) = (Vec::new(), None);
+    let elaborated =
+        Elaborated { scene, sites, live_literals, as_written, declared, claims, soft_shadows };
     let elaborated = (!failed).then_some(elaborated);
     Elaboration { elaborated, diagnostics, literals, structural }
 }

@@ -13,6 +13,9 @@ pub struct Elaborated {
     pub sites: Vec<Site>,
     /// Literals that are params: none unless [`crate::Options::live_literals`] is set.
     pub live_literals: Vec<LiveLiteral>,
+    /// The scene with its literals as constants, if there are live literals. Its params come first
+    /// in `scene`.
+    pub as_written: Option<Box<Scene>>,
     /// The shapes that the scene and its imports declare, with the spans of their clauses.
     pub declared: Vec<Declared>,
     /// The Lipschitz constants that the scene's functions state, by call.
