@@ -22,10 +22,11 @@ enum Task {
 /// before the weights, each of which depends on all values that the derivatives share.
 pub(super) fn depth_first(dag: &Dag, heavy: usize) -> Vec<usize> {
     let sizes = dag.exclusive().lanes;
+    let moved = moved_sizes(dag, &sizes);
     let count = dag.nodes.len();
     let (mut order, mut done) = (Vec::with_capacity(count), vec![false; count]);
     // The last task is taken first, so larger arguments are sorted to the end.
-    let sorted = |positions: &[usize], done: &[bool]| {
+    let sorted = |positions: &[usize], sizes: &[usize], done: &[bool]| {
         let mut open: Vec<usize> = positions.iter().copied().filter(|&p| !done[p]).collect();
         open.sort_by_key(|&position| (sizes[position], position));
         open
@@ -33,7 +34,7 @@ pub(super) fn depth_first(dag: &Dag, heavy: usize) -> Vec<usize> {
     let is_heavy = |position: &usize| sizes[*position] >= heavy;
     // Nodes that no root needs come last.
     let mut tasks: Vec<Task> = (0..count).rev().map(Task::Compute).collect();
-    let roots = sorted(&dag.roots, &done);
+    let roots = sorted(&dag.roots, &sizes, &done);
     tasks.extend(roots.iter().copied().map(Task::Compute));
     tasks.extend(roots.into_iter().filter(is_heavy).map(Task::Prepare));
     while let Some(task) = tasks.pop() {
@@ -41,7 +42,9 @@ pub(super) fn depth_first(dag: &Dag, heavy: usize) -> Vec<usize> {
         if done[position] {
             continue;
         }
-        let open = || sorted(&dag.arguments[position], &done);
+        let only_moves = dag.own_lanes(position) == 0;
+        let sizes = if only_moves { &moved } else { &sizes };
+        let open = || sorted(&dag.arguments[position], sizes, &done);
         match task {
             Task::Prepare(_) => {
                 let open: Vec<usize> = open().into_iter().filter(is_heavy).collect();
@@ -64,4 +67,19 @@ pub(super) fn depth_first(dag: &Dag, heavy: usize) -> Vec<usize> {
         }
     }
     order
+}
+
+/// For each node that only moves lanes, the largest of the numbers of its arguments; for other
+/// nodes, the number of lanes that are computed for it alone. A vector of a distance and of three
+/// components of the gradient needs none of these for one component alone. The gradient still comes
+/// first, because it computes the values of the distance on its way.
+fn moved_sizes(dag: &Dag, sizes: &[usize]) -> Vec<usize> {
+    let mut moved = sizes.to_vec();
+    for position in 0..dag.nodes.len() {
+        if dag.own_lanes(position) == 0 {
+            let largest = dag.arguments[position].iter().map(|&argument| moved[argument]).max();
+            moved[position] = moved[position].max(largest.unwrap_or(0));
+        }
+    }
+    moved
 }
