@@ -9,6 +9,7 @@ use sdfc::{
     Backend, Code, Compiler, Emit, Error, Image, MeshOptions, Method, PictureOptions, Plane, Pose,
     Scene, ShaderOptions, Stage, Target, no_progress,
 };
+use sdfc_graph::eval::Tape;
 use sdfc_render::{HIT, linear_to_srgb8};
 
 fn scene(text: &str) -> Scene {
@@ -180,6 +181,52 @@ fn any_pose_shows_a_planar_picture_from_the_front() {
     // From the side, at the distance 5: a half height of 0.4 at the distance 1 is 2 there.
     assert_eq!(seen([0.2 + 3.0, 0.1, 4.0], false, 0.4), front);
     assert_ne!(seen([0.2, 0.1, 1.0], true, 1.0), front);
+}
+
+/// The CPU renderer leaves out of a square of pixels what cannot matter there.
+#[test]
+fn squares_of_pixels_show_what_the_whole_formula_shows() {
+    let strokes: String = (0..60)
+        .map(|i: i32| {
+            let [x, y] = [f64::from(i * 37 % 60) / 16.0 - 1.9, f64::from(i * 23 % 60) / 20.0 - 1.5];
+            format!("abs(length(p - [{x}, {y}]) - 0.11) - 0.02,\n")
+        })
+        .collect();
+    let scenes = [
+        format!("region page() = min({strokes})\npage().color(#d0c080)"),
+        "rect([1, 2]).repeat(spacing: [1.4, 2.3]).color(stripes(#f00, #00f, width: 0.3))\n\
+         circle(0.7).translate(x: 1).scale(0.8).color(#123456)\nisolines(0.21)"
+            .to_owned(),
+        "text(\"Sp8\", size: 2).translate(x: -1.5).color(#fff)\n\
+         union(regular_polygon(5, 0.6), circle(0.5).translate(y: 0.6), blend: smooth(0.3)).color(checker(#0a0, #aa0))"
+            .to_owned(),
+    ];
+    let size = [150, 133];
+    for text in scenes {
+        let camera = "camera(eye: [0.2, 0, 1], target: [0.2, 0, 0], up: [0.3, 1, 0], height: 4)";
+        let scene = scene(&format!("{text}\n{camera}"));
+        let image =
+            scene.render(&options(size).backend(Backend::Cpu), &mut no_progress).unwrap().image;
+        let (program, frame) = (scene.program(), scene.defaults());
+        let tape = Tape::for_rays(&program.graph, &[program.planar_pixel.unwrap()]).unwrap();
+        let mut whole = tape.prepare::<f32>(&frame);
+        let view = scene.view(&frame, size).unwrap();
+        let width = (2.0 * view.footprint().radius) as f32;
+        for (x, y) in (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| (x, y))) {
+            let middle = view.ray(x, y)[0].to_array().map(|place| place as f32);
+            let [[red, green, blue, distance]] = *whole.eval_ray(middle, [width; 3]) else {
+                panic!("one root")
+            };
+            let pixel = image.pixel(x, y).unwrap();
+            for (seen, expected) in pixel.color.into_iter().zip([red, green, blue]) {
+                assert!(
+                    (seen - expected).abs() < 1e-4,
+                    "{text}: {seen}, not {expected} at {x}, {y}"
+                );
+            }
+            assert_eq!(pixel.status == HIT, distance <= 0.0, "{text} at {x}, {y}");
+        }
+    }
 }
 
 #[test]

@@ -4,6 +4,7 @@ use super::affine::Affine;
 use super::frame::FrameValues;
 use super::interval::{BranchPath, Interval};
 use super::number::Number;
+use super::scalarise::Lanes;
 use super::tape::{Code, Definition, Instruction, LoopCode, POINT_LANES, Tape};
 use super::tracer::{NoTrace, Tracer};
 
@@ -97,6 +98,23 @@ impl<N: Number> Evaluator<'_, N> {
             }
         }
         &self.outputs
+    }
+
+    /// The values of registers after evaluation at points. Lanes beyond those given are 0.
+    pub(super) fn registers_at(
+        &mut self,
+        points: &[[N; POINT_LANES]],
+        outputs: &[Lanes<u32>],
+    ) -> Vec<[N; 4]> {
+        self.run(points, &mut NoTrace);
+        let of = |lanes: &Lanes<u32>| {
+            let mut values = [N::constant(0.0); 4];
+            for (value, &register) in values.iter_mut().zip(lanes.as_slice()) {
+                *value = self.registers[register as usize];
+            }
+            values
+        };
+        outputs.iter().map(of).collect()
     }
 
     /// The first lane of the first root at a point; 0 without roots.

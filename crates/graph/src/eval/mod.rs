@@ -67,5 +67,5 @@ pub use interval::{BranchPath, Interval};
 pub use number::Number;
 pub use packet::Packet;
 pub use sample::{FieldSample, evaluate_frame, sample_field};
-pub use specialize::FieldOver;
+pub use specialize::{FieldOver, RootsOver};
 pub use tape::{Tape, TapeError};

@@ -169,9 +169,11 @@ impl Recorder {
         Self { levels, ..Self::default() }
     }
 
-    /// The coordinates of the outermost point.
+    /// The coordinates of the point of the next level.
     pub(super) fn point(&mut self) -> [u32; POINT_LANES] {
-        std::array::from_fn(|lane| self.define(Definition::Point(lane), true))
+        let first = usize::from(self.levels) * POINT_LANES;
+        self.levels += 1;
+        std::array::from_fn(|lane| self.define(Definition::Point(first + lane), true))
     }
 
     fn define(&mut self, definition: Definition, varying: bool) -> u32 {

@@ -69,26 +69,82 @@ impl Tape {
     /// # Ok::<(), sdfc_graph::eval::TapeError>(())
     /// ```
     pub fn over(&self, frame: &FrameValues, region: [Affine; 3]) -> FieldOver {
+        let first = self.outputs.first().map(|lanes| Lanes::scalar(lanes.get(0)));
+        let over = self.roots_over(frame, &[region], &Vec::from_iter(first));
+        let value = over.values.first().map_or(Affine::constant(0.0), |lanes| lanes[0]);
+        FieldOver { value, tape: over.tape, operations: over.operations }
+    }
+
+    /// The functions of a ray over a region of origins and one of directions, for one frame, given
+    /// a tape made by [`Tape::for_rays`]. The tape computes all lanes of all roots.
+    ///
+    /// ```
+    /// use sdfc_graph::eval::{Affine, FrameValues, Tape};
+    /// use sdfc_graph::{Dim, Graph};
+    ///
+    /// let mut graph = Graph::new();
+    /// let (origin, direction) = (graph.point(0, Dim::Three), graph.point(1, Dim::Three));
+    /// let (x, dx) = (graph.component(origin, 0), graph.component(direction, 0));
+    /// let root = graph.max(x, dx);
+    /// let tape = Tape::for_rays(&graph, &[root])?;
+    ///
+    /// let frame = FrameValues::default();
+    /// let origin = Affine::coordinate(4.0, [1.0, 0.0, 0.0]);
+    /// let direction = Affine::coordinate(1.0, [0.0; 3]);
+    /// let over = tape.over_rays(&frame, [[origin; 3], [direction; 3]]);
+    /// assert!(over.values[0][0].range().lo() > 2.99);
+    /// let tape = over.tape.expect("a short tape");
+    /// assert_eq!(tape.operations(), 0);
+    /// assert_eq!(tape.prepare::<f64>(&frame).eval_ray([3.5; 3], [1.0; 3])[0][0], 3.5);
+    /// # Ok::<(), sdfc_graph::eval::TapeError>(())
+    /// ```
+    pub fn over_rays(&self, frame: &FrameValues, region: [[Affine; 3]; 2]) -> RootsOver {
+        self.roots_over(frame, &region, &self.outputs)
+    }
+
+    /// The values of registers over a region of points, and a tape that computes them.
+    fn roots_over(
+        &self,
+        frame: &FrameValues,
+        region: &[[Affine; 3]],
+        outputs: &[Lanes<u32>],
+    ) -> RootsOver {
         let trace = Trace { recorder: RefCell::new(RECORDER.take()), operations: Cell::new(0) };
-        let axes = trace.recorder.borrow_mut().point();
-        let point = std::array::from_fn(|axis| Traced {
-            form: region[axis],
-            constant: None,
-            source: Some((&trace, axes[axis])),
-        });
+        let points: Vec<[Traced<'_>; 3]> = region
+            .iter()
+            .map(|forms| {
+                let axes = trace.recorder.borrow_mut().point();
+                std::array::from_fn(|axis| Traced {
+                    form: forms[axis],
+                    constant: None,
+                    source: Some((&trace, axes[axis])),
+                })
+            })
+            .collect();
         let kept = |value: f64| Traced {
             source: Some((&trace, trace.recorder.borrow_mut().kept(value))),
             ..Traced::constant(value)
         };
-        let result = self.evaluator(frame, kept).scalar(point);
-        let output = result.id(&trace);
+        let mut evaluator = self.evaluator(frame, kept);
+        let roots = evaluator.registers_at(&points, outputs);
+        let values = roots.iter().map(|lanes| lanes.map(|lane| lane.form)).collect();
+        let ids: Option<Vec<Lanes<u32>>> = roots
+            .iter()
+            .zip(outputs)
+            .map(|(root, lanes)| {
+                let ids: Vec<u32> = root[..lanes.as_slice().len()]
+                    .iter()
+                    .map(|lane| lane.id(&trace))
+                    .collect::<Option<_>>()?;
+                Some(Lanes::new(ids.len(), |lane| ids[lane]))
+            })
+            .collect();
         let (mut recorder, operations) = (trace.recorder.take(), trace.operations.get());
         let is_whole = recorder.definitions.len() <= MOST_OPERATIONS;
-        let output = output.filter(|_| is_whole);
-        let tape = output.map(|output| recorder.finish(vec![Lanes::scalar(output)]));
+        let tape = ids.filter(|_| is_whole).map(|ids| recorder.finish(ids));
         recorder.clear();
         RECORDER.set(recorder);
-        FieldOver { value: result.form, tape, operations }
+        RootsOver { values, tape, operations }
     }
 }
 
@@ -101,6 +157,18 @@ pub struct FieldOver {
     pub tape: Option<Tape>,
     /// Number of operations that the whole tape ran in the region. Its loops run no iterations
     /// that can follow at no point of the region.
+    pub operations: usize,
+}
+
+/// The roots of a tape over a region.
+#[derive(Clone, Debug)]
+pub struct RootsOver {
+    /// The lanes of each root, as functions of the region's coordinates. Lanes beyond a root's
+    /// width are 0.
+    pub values: Vec<[Affine; 4]>,
+    /// The specialised tape; `None` if it would be too long.
+    pub tape: Option<Tape>,
+    /// As in [`FieldOver`].
     pub operations: usize,
 }
 

@@ -10,6 +10,7 @@ mod gradients;
 pub(crate) mod method;
 mod pixels;
 mod planar;
+mod planar_cells;
 mod pre_intersection;
 mod ray;
 mod shade;
@@ -17,6 +18,7 @@ mod surroundings;
 mod trace;
 mod wave;
 
+use std::sync::Arc;
 use std::time::Instant;
 
 #[cfg(feature = "threads")]
@@ -38,6 +40,7 @@ use gradients::Gradient;
 use method::CpuMethod;
 use pixels::Pixels;
 use planar::PlanarPixels;
+use planar_cells::PlanarCells;
 use pre_intersection::PreIntersectionTapes;
 use ray::LANES;
 use trace::Limits;
@@ -64,7 +67,7 @@ pub struct CpuScene {
     /// True if a small value of the field may be far from the surface.
     is_loose: bool,
     /// The pixel of a planar picture, which replaces all others.
-    planar_pixel: Option<Tape>,
+    planar_pixel: Option<Arc<Tape>>,
 }
 
 impl CpuScene {
@@ -92,7 +95,7 @@ impl CpuScene {
             gradient: program.gradient.map(|gradient| tape(&[gradient])).transpose()?,
             material: material.transpose().map_err(refused)?,
             is_loose: program.is_loose,
-            planar_pixel: planar_pixel.transpose().map_err(refused)?,
+            planar_pixel: planar_pixel.transpose().map_err(refused)?.map(Arc::new),
         })
     }
 
@@ -127,7 +130,8 @@ impl CpuScene {
         progress: &mut OnProgress<'_>,
     ) -> Result<Frame, RenderError> {
         if let Some(tape) = &self.planar_pixel {
-            let pixels = PlanarPixels::<T> { view, pixel: tape.prepare(frame) };
+            let cells = PlanarCells::new(tape, view, frame);
+            let pixels = PlanarPixels::<T>::new(&cells, view, frame);
             return self.draw(view, options, progress, &pixels);
         }
         if self.gradient.is_none() {
