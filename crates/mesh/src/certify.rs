@@ -4,7 +4,7 @@ use rayon::prelude::*;
 use rustc_hash::FxHashSet;
 
 use crate::error::{MeshError, Phase};
-use crate::field::{Frame, LocalField, Prism, Prober};
+use crate::field::{Frame, LocalField, Prism, Prober, ROUNDING};
 use crate::grid::Grid;
 use crate::nearness::{Clipped, clip, crosses_once, distance};
 use crate::refine::{OnProgress, report};
@@ -25,6 +25,10 @@ const FLOOD: usize = 20_000;
 const SMALL: f64 = 0.7;
 /// The field is 0 in a box of a flat grid if all values are at most this fraction of the error.
 const ZERO: f64 = 2e-6;
+/// Faces may touch in a box that is at most this large, in errors.
+const TOUCHING: f64 = 4.0;
+/// Faces touch in a box if the field crosses 0 by at most this part of its bounds there.
+const TOUCHING_PART: f64 = 0.01;
 /// Part of the error that proofs use. The rest covers their rounding.
 const USED: f64 = 1.0 - 1e-6;
 
@@ -57,6 +61,7 @@ enum Outcome<'f> {
     Empty,
     Sheet,
     Small,
+    Touching,
     Undecided([Vec3; 2]),
     Divided(Task<'f>),
 }
@@ -128,6 +133,7 @@ impl<'f> Prover<'_, 'f> {
                     Outcome::Empty => certificate.empty_boxes += 1,
                     Outcome::Sheet => certificate.sheet_boxes += 1,
                     Outcome::Small => certificate.small_boxes += 1,
+                    Outcome::Touching => certificate.touching_boxes += 1,
                     Outcome::Undecided(bounds) => undecided.push(bounds),
                     Outcome::Divided(task) => waiting.push(task),
                 }
@@ -186,9 +192,16 @@ impl<'f> Prover<'_, 'f> {
         if changes.as_ref().is_some_and(Vec::is_empty) {
             return Outcome::Kept;
         }
-        let is_absent = prober.side_over(&Prism::aligned(bounds)).is_some();
-        if is_absent && !triangles.iter().any(|t| meets(self.corners(*t), bounds, 0.0)) {
+        let prism = Prism::aligned(bounds);
+        let is_absent = prober.nearly_side_over(&prism, ROUNDING).is_some();
+        let is_free = !triangles.iter().any(|t| meets(self.corners(*t), bounds, 0.0));
+        if is_absent && is_free {
             return Outcome::Empty;
+        }
+        let side = bounds[1][0] - bounds[0][0];
+        let may_touch = is_free && side <= TOUCHING * self.error;
+        if may_touch && field.nearly_side_over(&prism, TOUCHING_PART).is_some() {
+            return Outcome::Touching;
         }
         let few = !triangles.is_empty() && triangles.len() <= MANY;
         if few && self.is_sheet(prober, bounds, triangles) == Some(true) {

@@ -181,6 +181,14 @@ impl<'f> LocalField<'f> {
         Self { short: found.map(Arc::new).or(self.short), side, ..self }
     }
 
+    /// Returns the side of a box as [`Prober::nearly_side_over`], by tighter bounds that take
+    /// longer: those of the formula that is left in the box.
+    pub(crate) fn nearly_side_over(&self, prism: &Prism, part: f64) -> Option<bool> {
+        let coordinates = placed(self.plane, prism.coordinates());
+        let range = self.tape().over(self.frame, coordinates).value.range();
+        proven(shrunk(range, part), self.level)
+    }
+
     /// Returns the field with registers.
     pub(crate) fn prober(&self) -> Prober<'_> {
         let tape = self.tape();
@@ -195,6 +203,10 @@ impl<'f> LocalField<'f> {
         }
     }
 }
+
+/// The part of a field's variation in a box that is rounding. Where flat faces touch within a solid,
+/// the field is 0 and nowhere positive, but its bounds exceed 0 by rounding.
+pub(crate) const ROUNDING: f64 = 1e-9;
 
 /// Returns the position in space of a point of a plane; the point itself without a plane.
 fn placed<N: Number>(plane: Option<Plane>, point: [N; 3]) -> [N; 3] {
@@ -245,11 +257,18 @@ impl Prober<'_> {
     /// Returns the side of a whole box, if it is proven that all of it is on one side. Where the
     /// formula jumps, as at the borders of repeated cells, it is proven for each result.
     pub(crate) fn side_over(&mut self, prism: &Prism) -> Option<bool> {
+        self.nearly_side_over(prism, 0.0)
+    }
+
+    /// Returns the side of a whole box, if it is proven that the field crosses 0 nowhere by more
+    /// than a part of its variation in the box.
+    pub(crate) fn nearly_side_over(&mut self, prism: &Prism, part: f64) -> Option<bool> {
         let box_ = placed(self.plane, prism.coordinates());
         self.path.clear();
         let mut side = None;
         for _ in 0..MOST_PATHS {
-            match proven(self.affine.scalar_along(box_, &mut self.path).range(), self.level) {
+            let range = self.affine.scalar_along(box_, &mut self.path).range();
+            match proven(shrunk(range, part), self.level) {
                 Some(found) if side.is_some_and(|side| side != found) => return None,
                 Some(found) => side = Some(found),
                 None if self.path.fork(MOST_JUMPS) => continue,
@@ -321,6 +340,12 @@ const MOST_STEPS: u32 = 60;
 const MOST_PATHS: u32 = 16;
 /// Jumps in a formula over a box that are decided.
 const MOST_JUMPS: usize = 3;
+
+/// The range without a part of its width at both ends.
+fn shrunk(range: Interval, part: f64) -> Interval {
+    let part = part * (range.hi() - range.lo());
+    if part > 0.0 { Interval::new(range.lo() + part, range.hi() - part) } else { range }
+}
 
 fn proven(range: Interval, level: f64) -> Option<bool> {
     if range.lo() > level {

@@ -109,7 +109,7 @@ impl Tape {
         region: &[[Affine; 3]],
         outputs: &[Lanes<u32>],
     ) -> RootsOver {
-        let trace = Trace { recorder: RefCell::new(RECORDER.take()), operations: Cell::new(0) };
+        let trace = Trace { recorder: RefCell::new(RECORDER.take()), ..Trace::default() };
         let points: Vec<[Traced<'_>; 3]> = region
             .iter()
             .map(|forms| {
@@ -178,11 +178,32 @@ thread_local! {
 }
 
 /// The evaluation so far.
+#[derive(Default)]
 struct Trace {
     /// The operations that are recorded.
     recorder: RefCell<Recorder>,
     /// Number of operations that were run.
     operations: Cell<usize>,
+    /// What is recorded as the square of another operation.
+    squares: RefCell<Origins>,
+    /// What is equal to the greater of another operation and 0.
+    positive_parts: RefCell<Origins>,
+    /// What is the lesser of another operation and 0.
+    negative_parts: RefCell<Origins>,
+}
+
+/// Recorded operations, ascending: the index of each, and another operation that it is made from.
+#[derive(Default)]
+struct Origins(Vec<(u32, Origin)>);
+
+/// An operation: its index and its value.
+type Origin = (u32, Affine);
+
+impl Origins {
+    fn of(&self, id: u32) -> Option<Origin> {
+        let index = self.0.binary_search_by_key(&id, |(made, _)| *made).ok()?;
+        Some(self.0[index].1)
+    }
 }
 
 /// A number over the region, and where it comes from.
@@ -230,8 +251,46 @@ impl<'t> Traced<'t> {
             // Affine forms pick the same argument.
             Some(i) if matches!(op, Op::Min | Op::Max) => x[i],
             Some(i) => Self { form: op.apply(|i| x[i].form), ..x[i] },
-            None => Self::recorded(op, x, op.apply(|i| x[i].form)),
+            None if op == Op::Sqrt => x[0].root(),
+            None => {
+                let joined = if op == Op::Add { Self::joined(x[0], x[1]) } else { None };
+                joined.unwrap_or_else(|| Self::recorded(op, x, op.apply(|i| x[i].form)))
+            }
         }
+    }
+
+    /// Returns the square root. The root of x² is x or -x without any rounding, so the distance to
+    /// a face of a box is linear in the position, and so are its bounds.
+    fn root(self) -> Self {
+        let recorded = || Self::recorded(Op::Sqrt, [self; 3], self.form.sqrt());
+        let Some((trace, id)) = self.source else { return recorded() };
+        let Some((root, form)) = trace.squares.borrow().of(id) else { return recorded() };
+        let known = Self { form, constant: None, source: Some((trace, root)) };
+        if form.range().lo() > 0.0 {
+            return known;
+        }
+        if form.range().hi() < 0.0 {
+            return Self::apply(Op::Neg, [known; 3]);
+        }
+        let result = recorded();
+        let part = trace.positive_parts.borrow().of(root);
+        if let (Some((_, id)), Some(origin)) = (result.source, part) {
+            trace.positive_parts.borrow_mut().0.push((id, origin));
+        }
+        result
+    }
+
+    /// Returns x for the sum of the positive and the negative part of x, in any order. It has no
+    /// rounding. The distance to a box, outside and inside, is such a sum at a face.
+    fn joined(a: Self, b: Self) -> Option<Self> {
+        let ((trace, a), (_, b)) = (a.source?, b.source?);
+        let (positive, negative) = (trace.positive_parts.borrow(), trace.negative_parts.borrow());
+        [(a, b), (b, a)].into_iter().find_map(|(above, below)| {
+            let (origin, form) = positive.of(above)?;
+            let (other, _) = negative.of(below)?;
+            let joined = Self { form, constant: None, source: Some((trace, origin)) };
+            (origin == other).then_some(joined)
+        })
     }
 
     /// Returns the argument that an operation's result is equal to everywhere.
@@ -321,8 +380,25 @@ impl<'t> Traced<'t> {
             let ids = [a?, b?, c?];
             let mut recorder = trace.recorder.borrow_mut();
             // A tape that is too long is given up at the end.
-            let is_full = recorder.definitions.len() > MOST_OPERATIONS;
-            Some((trace, if is_full { ids[0] } else { recorder.define_apply(op, ids) }))
+            if recorder.definitions.len() > MOST_OPERATIONS {
+                return Some((trace, ids[0]));
+            }
+            let id = recorder.define_apply(op, ids);
+            let other = usize::from(x[0].is(0.0));
+            let has_zero = x[..op.arity()].iter().any(|x| x.is(0.0));
+            let origins = if op == Op::Square {
+                Some(&trace.squares)
+            } else if op == Op::Max && has_zero {
+                Some(&trace.positive_parts)
+            } else if op == Op::Min && has_zero {
+                Some(&trace.negative_parts)
+            } else {
+                None
+            };
+            if let Some(origins) = origins {
+                origins.borrow_mut().0.push((id, (ids[other], x[other].form)));
+            }
+            Some((trace, id))
         });
         Self { form, constant, source }
     }

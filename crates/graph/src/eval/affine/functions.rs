@@ -67,7 +67,6 @@ impl Affine {
     /// Returns the lesser of two numbers, or the greater.
     pub(super) fn extreme(self, y: Self, greater: bool) -> Self {
         let difference = self.minus(y);
-        let sign = if greater { -1.0 } else { 1.0 };
         let (lo, hi) = (difference.range.lo(), difference.range.hi());
         let pick = |first: bool| if first != greater { self } else { y };
         if hi <= 0.0 {
@@ -81,9 +80,13 @@ impl Affine {
             false => Number::min(self.range, y.range),
         };
         // (x + y - |x - y|) / 2 is the lesser.
-        let twice =
-            self.plus(y).minus(difference.magnitude().scaled(sign, number(0.0), Interval::ENTIRE));
-        twice.scaled(0.5, number(0.0), range)
+        let (sum, magnitude) = (self.plus(y), difference.magnitude());
+        let twice = if greater { sum.plus(magnitude) } else { sum.minus(magnitude) };
+        twice.scaled(
+            0.5,
+            number(0.0),
+            range.clipped(0.5 * twice.range.lo(), 0.5 * twice.range.hi()),
+        )
     }
 
     /// Compares two numbers, also by the range of their difference.

@@ -58,7 +58,7 @@ impl Interval {
     }
 
     /// The part that lies in a range; the nearest end of the range if there is none.
-    fn clipped(self, lo: f64, hi: f64) -> Self {
+    pub(super) fn clipped(self, lo: f64, hi: f64) -> Self {
         Self { lo: self.lo.clamp(lo, hi), hi: self.hi.clamp(lo, hi) }
     }
 
