@@ -8,16 +8,17 @@
 #![allow(clippy::print_stdout, reason = "a run of the driver prints what it found")]
 
 mod driver;
+mod field;
 mod radv;
 mod table;
 
 use libtest_mimic::{Arguments, Failed, Trial};
-use sdfc::{Emit, ShaderOptions, Target};
+use sdfc::{Emit, Scene, ShaderOptions, Target};
 use sdfc_test_support::repository;
 use sdfc_tests::compiled_examples;
 
 use crate::radv::Chip;
-use crate::table::{Row, Table};
+use crate::table::{Part, Row, Table};
 
 fn main() {
     if let Some(folder) = std::env::var_os(radv::SHADERS) {
@@ -25,24 +26,31 @@ fn main() {
     }
     let is_required = std::env::var_os("SDFC_REQUIRE_GPU").is_some_and(|value| value == "1");
     let is_ignored = !is_required && radv::manifest().is_none();
-    let trial = Trial::test("no_example_takes_more_of_a_gpu_than_the_table_says", check);
+    let trial = Trial::test("no_example_takes_more_of_a_gpu_than_the_tables_say", check);
     libtest_mimic::run(&Arguments::from_args(), vec![trial.with_ignored_flag(is_ignored)]).exit();
 }
 
 fn check() -> Result<(), Failed> {
     let path = repository().join("docs/gpu.md");
-    let page = std::fs::read_to_string(&path)?.replace("\r\n", "\n");
-    let known = Table::read(&page)?;
-    let found = measure()?;
+    let mut page = std::fs::read_to_string(&path)?.replace("\r\n", "\n");
+    let mut problems = Vec::new();
+    for part in Part::ALL {
+        let known = Table::read(&page, part)?;
+        let found = measure(part)?;
+        if std::env::var_os("GPU_UPDATE").is_some() {
+            page = found.written_into(&page, part)?;
+            continue;
+        }
+        if found.driver != known.driver {
+            let (here, there) = (&found.driver, &known.driver);
+            return Err(format!("docs/gpu.md is of {there}; this machine has {here}").into());
+        }
+        let worse = found.worse_than(&known).into_iter();
+        problems.extend(worse.map(|problem| format!("{}: {problem}", part.name())));
+    }
     if std::env::var_os("GPU_UPDATE").is_some() {
-        std::fs::write(&path, found.written_into(&page)?)?;
-        return Ok(());
+        std::fs::write(&path, page)?;
     }
-    if found.driver != known.driver {
-        let (here, there) = (&found.driver, &known.driver);
-        return Err(format!("docs/gpu.md is of {there}; this machine has {here}").into());
-    }
-    let problems = found.worse_than(&known);
     if problems.is_empty() {
         return Ok(());
     }
@@ -50,15 +58,29 @@ fn check() -> Result<(), Failed> {
     Err(format!("{}\n{advice}", problems.join("\n")).into())
 }
 
-/// Compiles all examples for all chips.
-fn measure() -> Result<Table, Failed> {
+/// The SPIR-V module of a part of a scene's shader.
+fn spirv(scene: &Scene, part: Part) -> Result<Vec<u8>, Failed> {
+    match part {
+        Part::Render => {
+            let options = ShaderOptions::new().target(Target::Spirv).emit(Emit::Render);
+            Ok(scene.write_shader(&options)?.code.into_bytes())
+        }
+        Part::Field => {
+            let options = ShaderOptions::new().target(Target::Wgsl).emit(Emit::Field);
+            let code = scene.write_shader(&options)?.code.into_bytes();
+            Ok(field::spirv(&String::from_utf8(code)?)?)
+        }
+    }
+}
+
+/// Compiles a part of all examples for all chips.
+fn measure(part: Part) -> Result<Table, Failed> {
     let manifest = radv::manifest().ok_or("there is no RADV driver")?;
     let folder = tempfile::tempdir()?;
     let mut names = Vec::new();
     for (name, scene) in compiled_examples()? {
-        let options = ShaderOptions::new().target(Target::Spirv).emit(Emit::Render);
-        let code = scene.write_shader(&options)?.code.into_bytes();
-        std::fs::write(folder.path().join(format!("{:03}.spv", names.len())), code)?;
+        let path = folder.path().join(format!("{:03}.spv", names.len()));
+        std::fs::write(path, spirv(scene, part)?)?;
         names.push(name.clone());
     }
     // Each chip needs a process of its own: the driver reads the environment once.

@@ -1,14 +1,40 @@
-//! The table in `docs/gpu.md`.
+//! The tables in `docs/gpu.md`.
 
 use std::fmt::Write;
 
 use crate::radv::{Chip, Statistics};
 
-const BEGIN: &str = "<!-- The table is written by tests/occupancy. -->\n";
 const END: &str = "<!-- End of the table. -->\n";
 
 /// By how much the estimated cost may grow unnoticed, in percent.
 const MOST_COST: u64 = 3;
+
+/// A part of the shader of an example, which has a table of its own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    /// The complete picture.
+    Render,
+    /// The functions for distance and gradient.
+    Field,
+}
+
+impl Part {
+    /// All parts.
+    pub const ALL: [Self; 2] = [Self::Render, Self::Field];
+
+    /// The name, as in `--emit`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Render => "render",
+            Self::Field => "field",
+        }
+    }
+
+    /// The line before the table.
+    fn begin(self) -> String {
+        format!("<!-- The table of {} is written by tests/occupancy. -->\n", self.name())
+    }
+}
 
 /// What the compilers of all chips made of the examples.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -34,8 +60,8 @@ impl Table {
     /// # Errors
     ///
     /// The page has no table, or one of another form.
-    pub fn read(page: &str) -> Result<Self, String> {
-        let [_, table, _] = split(page)?;
+    pub fn read(page: &str, part: Part) -> Result<Self, String> {
+        let [_, table, _] = split(page, part)?;
         let mut table_rows = Vec::new();
         let mut driver = String::new();
         for line in table.lines() {
@@ -56,8 +82,8 @@ impl Table {
     /// # Errors
     ///
     /// The page has no table.
-    pub fn written_into(&self, page: &str) -> Result<String, String> {
-        let [head, _, tail] = split(page)?;
+    pub fn written_into(&self, page: &str, part: Part) -> Result<String, String> {
+        let [head, _, tail] = split(page, part)?;
         let mut text = format!("Driver: {}.\n\n", self.driver);
         let other = |chip: Chip| format!("{0} registers | spilled | waves", chip.name());
         let [first, second, third] = Chip::ALL;
@@ -75,7 +101,7 @@ impl Table {
             let _ = writeln!(text, "| {name} | {a} | {instructions} | {cost} | {b} | {c} |");
         }
         let _ = writeln!(text, "\n{}", self.summary());
-        Ok(format!("{head}{BEGIN}{text}{END}{tail}"))
+        Ok(format!("{head}{}{text}{END}{tail}", part.begin()))
     }
 
     /// How many examples spill, and how many run with few waves.
@@ -128,12 +154,12 @@ impl Table {
 }
 
 /// The page before, in and after the table.
-fn split(page: &str) -> Result<[&str; 3], String> {
-    let parts = page.split_once(BEGIN).and_then(|(head, rest)| {
+fn split(page: &str, part: Part) -> Result<[&str; 3], String> {
+    let parts = page.split_once(&part.begin()).and_then(|(head, rest)| {
         let (table, tail) = rest.split_once(END)?;
         Some([head, table, tail])
     });
-    parts.ok_or_else(|| "docs/gpu.md has no comments around its table".to_owned())
+    parts.ok_or_else(|| format!("docs/gpu.md has no comments around its table of {}", part.name()))
 }
 
 fn row(cells: &[&str]) -> Option<Row> {
