@@ -193,13 +193,16 @@ impl<'f> Prover<'_, 'f> {
             return Outcome::Kept;
         }
         let prism = Prism::aligned(bounds);
-        let is_absent = prober.nearly_side_over(&prism, ROUNDING).is_some();
+        // A plane may lie in a face. Then the field is 0 all over, and nothing is known.
+        let is_flat = self.grid.is_flat;
+        let rounding = if is_flat { 0.0 } else { ROUNDING };
+        let is_absent = prober.nearly_side_over(&prism, rounding).is_some();
         let is_free = !triangles.iter().any(|t| meets(self.corners(*t), bounds, 0.0));
         if is_absent && is_free {
             return Outcome::Empty;
         }
         let side = bounds[1][0] - bounds[0][0];
-        let may_touch = is_free && side <= TOUCHING * self.error;
+        let may_touch = !is_flat && is_free && side <= TOUCHING * self.error;
         if may_touch && field.nearly_side_over(&prism, TOUCHING_PART).is_some() {
             return Outcome::Touching;
         }

@@ -65,8 +65,6 @@ pub struct ContourCertificate {
     /// Number of rectangles, smaller than the error, that contain both signs and part of the
     /// contour.
     pub small_boxes: u64,
-    /// As [`MeshCertificate::touching_boxes`].
-    pub touching_boxes: u64,
 }
 
 /// The field counts as outside where it is above minus this fraction of the error. So a plane in a
@@ -139,8 +137,7 @@ impl ContourCertificate {
         let boxes: Vec<[[f64; 2]; 2]> =
             proof.undecided.iter().map(|corners| corners.map(|[x, y, _]| [x, y])).collect();
         let MeshCertificate { error, is_proven, undecided, .. } = proof.certificate;
-        let MeshCertificate { empty_boxes, sheet_boxes, small_boxes, touching_boxes, .. } =
-            proof.certificate;
+        let MeshCertificate { empty_boxes, sheet_boxes, small_boxes, .. } = proof.certificate;
         Self {
             error,
             is_proven,
@@ -150,7 +147,6 @@ impl ContourCertificate {
             empty_boxes,
             sheet_boxes,
             small_boxes,
-            touching_boxes,
         }
     }
 }
