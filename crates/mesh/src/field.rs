@@ -204,8 +204,8 @@ impl<'f> LocalField<'f> {
     }
 }
 
-/// The part of a field's variation in a box that is rounding. Where flat faces touch within a solid,
-/// the field is 0 and nowhere positive, but its bounds exceed 0 by rounding.
+/// The part of a field's variation in a box that is rounding. Where flat faces touch within a
+/// solid, the field is 0 and nowhere positive, but its bounds exceed 0 by rounding.
 pub(crate) const ROUNDING: f64 = 1e-9;
 
 /// Returns the position in space of a point of a plane; the point itself without a plane.

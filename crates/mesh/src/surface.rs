@@ -47,10 +47,10 @@ pub struct MeshCertificate {
     pub sheet_boxes: u64,
     /// Number of boxes, smaller than the error, that contain both signs and part of the mesh.
     pub small_boxes: u64,
-    /// Number of boxes, at most four times as large as the error, in which faces touch: they hold no
-    /// triangle, and the field crosses 0 by at most a hundredth of its variation in the box. They
-    /// count as free of surface, so slits and skins that are thinner than about a tenth of the
-    /// error may be missing.
+    /// Number of boxes, at most four times as large as the error, in which faces touch: they hold
+    /// no triangle, and the field crosses 0 by at most a hundredth of its variation in the box.
+    /// They count as free of surface, so slits and skins that are thinner than about a tenth of
+    /// the error may be missing.
     pub touching_boxes: u64,
     /// True if mesh and surface are proven to have the same topology.
     pub is_topology_proven: bool,
