@@ -27,8 +27,8 @@ impl Scene {
     ///
     /// A software driver takes seconds to compile a formula of thousands of operations, and then
     /// evaluates all of them everywhere. The CPU back end evaluates in each cell of space what
-    /// matters there.
-    pub(crate) fn faster_on_cpu(&self, gpu: &Gpu, method: Method) -> Option<String> {
+    /// matters there. `None` if the GPU is faster, as far as `docs/scale.md` has measured.
+    pub fn faster_on_cpu(&self, gpu: &Gpu, method: Method) -> Option<String> {
         if !gpu.info().software {
             return None;
         }

@@ -26,7 +26,7 @@ fn main() -> ExitCode {
     let arguments = Arguments::from_args();
     let required = std::env::var_os("SDFC_REQUIRE_GPU").is_some();
     let ignored = !required && Gpu::new().is_err();
-    let tests: [(&str, Test); 11] = [
+    let tests: [(&str, Test); 12] = [
         ("a_changed_number_makes_no_pipeline", numbers),
         ("a_changed_number_in_a_rerolled_scene_makes_no_pipeline", many),
         ("a_param_that_decides_what_is_built_compiles_the_scene_again", counts),
@@ -36,6 +36,7 @@ fn main() -> ExitCode {
         ("all_methods_draw_as_the_command_line_does", methods),
         ("the_projection_can_differ_from_the_scenes_camera", parallel),
         ("regions_are_panned_instead_of_turned", planar),
+        ("a_software_driver_leaves_long_formulas_to_the_cpu", long),
         ("lost_devices_are_opened_again", lost),
         ("all_methods_are_compared_with_the_oracle", compared),
     ];
@@ -333,6 +334,27 @@ fn planar() -> Result<(), Failed> {
     }
     fixture.session.compare(false);
     expect(fixture.session.accuracy.progress().is_none(), "rays are compared")
+}
+
+fn long() -> Result<(), Failed> {
+    let rings: String = (0..1500)
+        .map(|i| {
+            let [x, y] = [f64::from(i * 37 % 1500) * 0.06, f64::from(i * 23 % 1500) * 0.05];
+            let width = 0.01 + 0.0001 * f64::from(i % 7);
+            format!("abs(length(p - [{x:.3}, {y:.3}]) - 0.03) - {width:.4},\n")
+        })
+        .collect();
+    let mut fixture = Fixture::new(&format!("region page() = min({rings})\npage()\n"))?;
+    fixture.finish()?;
+    let model = fixture.model()?;
+    let is_software = Gpu::new()?.info().software;
+    expect(matches!(model.engine, Engine::Cpu(_)) == is_software, "another engine draws")?;
+    let is_told = model.note.as_ref().is_some_and(|note| note.contains("drawn on the CPU"));
+    expect(is_told == is_software, &format!("{:?}", model.note))?;
+    // The next text is short.
+    fixture.write(&ball("1"))?;
+    fixture.until(|session| session.model.as_ref().is_some_and(|it| it.serial > model.serial))?;
+    expect(matches!(fixture.model()?.engine, Engine::Gpu(_)), "the CPU still draws")
 }
 
 /// More losses than are allowed without a picture in between.

@@ -85,8 +85,9 @@ pub struct Engines {
 }
 
 impl Engines {
-    /// Prepares a scene for the GPU, or for the CPU if there is no GPU. `proceed` is called before
-    /// a pipeline is made, which may take seconds; if it returns false, so does this, as `None`.
+    /// Prepares a scene for the GPU, or for the CPU if there is no GPU or if it is a software
+    /// driver that draws the scene's long formula slowly. `proceed` is called before a pipeline is
+    /// made, which may take seconds; if it returns false, so does this, as `None`.
     ///
     /// # Errors
     ///
@@ -124,6 +125,9 @@ impl Engines {
                 return on_cpu(scene, method, Some(note)).map(Some);
             }
         };
+        if let Some(why) = scene.faster_on_cpu(&gpu, method) {
+            return on_cpu(scene, method, Some(why)).map(Some);
+        }
         let start = Instant::now();
         let pipeline = Pipeline::new(&gpu, shader, marched.program.uniforms.len())?;
         build_times.pipeline = Some(milliseconds_since(start));
