@@ -349,8 +349,8 @@ fn long() -> Result<(), Failed> {
     let model = fixture.model()?;
     let is_software = Gpu::new()?.info().software;
     expect(matches!(model.engine, Engine::Cpu(_)) == is_software, "another engine draws")?;
-    let is_told = model.note.as_ref().is_some_and(|note| note.contains("drawn on the CPU"));
-    expect(is_told == is_software, &format!("{:?}", model.note))?;
+    let is_reported = model.note.as_ref().is_some_and(|note| note.contains("drawn on the CPU"));
+    expect(is_reported == is_software, &format!("{:?}", model.note))?;
     // The next text is short.
     fixture.write(&ball("1"))?;
     fixture.until(|session| session.model.as_ref().is_some_and(|it| it.serial > model.serial))?;
