@@ -59,7 +59,8 @@ pub struct PreviewCamera {
 pub struct PreviewOptions {
     /// Width and height in pixels, each from 1 to [`MAX_SIDE`].
     pub size: [u32; 2],
-    /// The camera; `None` for the scene's own, or one that sees the whole scene.
+    /// The camera; `None` for the scene's own, or one that sees the whole scene with its params at
+    /// their defaults.
     pub camera: Option<PreviewCamera>,
     /// Values of params; the others have their defaults.
     pub values: Vec<(String, ParamValue)>,

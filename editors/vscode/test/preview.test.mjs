@@ -67,6 +67,7 @@ test("a page gets params and a picture, and follows sliders, camera and text", a
   assert.equal(Buffer.from(first.png, "base64").subarray(1, 4).toString(), "PNG");
   await page.session.set("r", 1.5);
   assert.notEqual(page.pictures.at(-1).png, first.png);
+  assert.deepEqual(page.pictures.at(-1).camera, first.camera);
   await page.session.look(orbit(first.camera, 0.2, 0.1));
   assert.deepEqual(page.pictures.at(-1).camera.target, first.camera.target);
   await page.session.reset();

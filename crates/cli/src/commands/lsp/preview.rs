@@ -66,9 +66,7 @@ fn preview<'s>(
     let [width, height] = options.size;
     let pose = match &options.camera {
         Some(camera) => pose(camera)?,
-        None => {
-            scene.pose(&values, f64::from(width) / f64::from(height)).map_err(|e| e.to_string())?
-        }
+        None => own_pose(scene, &values, f64::from(width) / f64::from(height))?,
     };
     let picture = paint(scene, painter, options.size, pose, &values, question);
     let picture = picture.map_err(|e| e.to_string())?;
@@ -79,6 +77,15 @@ fn preview<'s>(
         device,
         notes: picture.note.into_iter().chain(picture.unproven).collect(),
     })
+}
+
+/// The camera that the scene states, or one that sees the whole scene with its defaults: a slider
+/// that makes the only shape larger must not draw the same picture from farther away.
+fn own_pose(scene: &Scene, values: &FrameValues, aspect: f64) -> Result<Pose, String> {
+    let stated = scene.program().settings.camera.is_some();
+    let pose =
+        if stated { scene.pose(values, aspect) } else { scene.pose(&scene.defaults(), aspect) };
+    pose.map_err(|e| e.to_string())
 }
 
 /// Draws with the painter that there is, or makes one: that compiles the shader.
