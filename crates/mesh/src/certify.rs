@@ -32,6 +32,9 @@ const TOUCHING_PART: f64 = 0.01;
 /// Part of the error that proofs use. The rest covers their rounding.
 const USED: f64 = 1.0 - 1e-6;
 
+/// Steps of a search for a side, as parts of its reach.
+const SEARCH: [f64; 8] = [0.5, 0.4, 0.32, 0.26, 0.2, 0.16, 0.13, 0.1];
+
 /// Points of a box through which lines are tried, from its middle to its corners.
 const LINES: [Vec3; 5] = [
     [0.0103, 0.0071, 0.0029],
@@ -311,6 +314,28 @@ fn changes_sign(prober: &mut Prober<'_>, middle: Vec3, reach: f64) -> bool {
             if found == [true; 2] {
                 return true;
             }
+        }
+    }
+    [false, true]
+        .into_iter()
+        .all(|side| found[usize::from(side)] || reaches(prober, middle, reach, side))
+}
+
+/// True if a search along the gradient proves a side within a distance. At a sharp edge, the
+/// gradients of its faces take turns, so the search goes between the faces.
+fn reaches(prober: &mut Prober<'_>, middle: Vec3, reach: f64, side: bool) -> bool {
+    let mut offset = [0.0; 3];
+    for step in SEARCH {
+        let (_, gradient) = prober.sample(add(middle, offset));
+        let Some(outward) = unit(gradient) else { return false };
+        let step = if side { -step } else { step };
+        offset = add(offset, scale(outward, step * reach));
+        let far = length(offset) / reach;
+        if far > 1.0 {
+            offset = scale(offset, 1.0 / far);
+        }
+        if prober.proven_side(add(middle, offset)) == Some(side) {
+            return true;
         }
     }
     false

@@ -21,10 +21,14 @@ const CASES: &[(&str, &str, f64, bool)] = &[
         true,
     ),
     ("cut corner", "box([1, 1, 1]) - sphere(0.6).translate([0.5, 0.5, 0.5])", 0.02, true),
+    ("acute edge", WEDGE, 0.005, true),
     ("twisted bar", "box([0.4, 0.4, 1.6]).twist(rate: 60deg)", 0.02, false),
     ("cone", "cone(0.5, 1)", 0.02, false),
     ("tangent spheres", "sphere(1) | sphere(1).translate(x: 2)", 0.02, false),
 ];
+
+/// Two boxes whose sides meet at 25 degrees.
+const WEDGE: &str = "box(2) & box([4, 1, 4]).rotate(y: 30deg).rotate(x: 25deg).translate(y: -0.9)";
 
 #[test]
 fn hard_scenes_give_valid_meshes() {
