@@ -21,6 +21,8 @@ struct Editor {
     from: Receiver<Value>,
     requests: u64,
     diagnostics: Vec<Value>,
+    /// What the server has asked for.
+    registered: Vec<String>,
 }
 
 impl Editor {
@@ -34,17 +36,20 @@ impl Editor {
             .unwrap();
         let to = child.stdin.take().unwrap();
         let from = messages(BufReader::new(child.stdout.take().unwrap()));
-        let mut editor = Self { child, to, from, requests: 0, diagnostics: Vec::new() };
+        let (requests, diagnostics, registered) = Default::default();
+        let mut editor = Self { child, to, from, requests, diagnostics, registered };
         let completion = json!({ "completionItem": { "snippetSupport": true } });
         let capabilities = json!({
             "general": { "positionEncodings": encodings },
             "textDocument": { "completion": completion },
+            "workspace": { "didChangeWatchedFiles": { "dynamicRegistration": true } },
         });
         let started = editor.ask(
             "initialize",
             json!({
                 "capabilities": capabilities,
                 "rootUri": format!("file://{}", folder.display()),
+                "initializationOptions": { "hoverPictures": true },
             }),
         );
         assert_eq!(started["serverInfo"]["name"], "sdfc");
@@ -62,13 +67,22 @@ impl Editor {
         self.send(&json!({ "jsonrpc": "2.0", "method": method, "params": params }));
     }
 
+    /// Waits for the next message. Requests of the server are answered.
     fn receive(&mut self) -> Value {
-        let message = self.from.recv_timeout(DEADLINE);
-        message.unwrap_or_else(|why| {
-            // Dropping the process would leave it running.
-            let _ended = self.child.kill();
-            panic!("no message from the server: {why}")
-        })
+        loop {
+            let message = self.from.recv_timeout(DEADLINE).unwrap_or_else(|why| {
+                // Dropping the process would leave it running.
+                let _ended = self.child.kill();
+                panic!("no message from the server: {why}")
+            });
+            if message["method"] != "client/registerCapability" {
+                return message;
+            }
+            let registrations = message["params"]["registrations"].as_array().unwrap();
+            let methods = registrations.iter().map(|it| it["method"].as_str().unwrap().to_owned());
+            self.registered.extend(methods);
+            self.send(&json!({ "jsonrpc": "2.0", "id": message["id"], "result": null }));
+        }
     }
 
     /// Sends a request and returns the whole answer.
@@ -208,6 +222,9 @@ fn an_editor_is_served_from_start_to_end() {
     let hover = editor.ask("textDocument/hover", Editor::at(&uri, 2, 2));
     assert!(hover["contents"]["value"].as_str().unwrap().contains("solid sphere("), "{hover}");
     assert!(hover["contents"]["value"].as_str().unwrap().contains("Here: exact;"), "{hover}");
+    let picture = "![sphere](data:image/png;base64,iVBORw0KGgo";
+    assert!(hover["contents"]["value"].as_str().unwrap().starts_with(picture), "{hover}");
+    assert_eq!(editor.registered, ["workspace/didChangeWatchedFiles"]);
     let document = json!({ "textDocument": { "uri": uri } });
     let lenses = editor.ask("textDocument/codeLens", document);
     let title = lenses[0]["command"]["title"].as_str().unwrap();
@@ -235,14 +252,56 @@ fn an_editor_is_served_from_start_to_end() {
     }
     // A file that is open counts with its text, and when it is closed the file on disk does.
     let part = format!("file://{}/part.sdf", folder.path().display());
-    editor.open(&part, "let unused = 1\n");
+    editor.open(&part, "let other = 1\n");
     assert_eq!(editor.diagnostics(&uri)[0]["code"], "E0209");
-    assert_ne!(editor.diagnostics(&part), json!([]));
+    // It draws nothing, but a scene imports it.
+    assert_eq!(editor.diagnostics(&part), json!([]));
     editor.notify("textDocument/didClose", json!({ "textDocument": { "uri": part } }));
     assert_eq!(editor.diagnostics(&uri), json!([]));
     assert_eq!(editor.diagnostics(&part), json!([]));
     let unknown = editor.answer("textDocument/unknown", Editor::at(&uri, 0, 0));
     assert_eq!(unknown["error"]["code"], -32601);
+    editor.end();
+}
+
+#[test]
+fn a_hint_marks_the_call_that_makes_an_uncertified_shape() {
+    let folder = common::folder(&[]);
+    let mut editor = Editor::start(folder.path(), json!(["utf-16"]));
+    let uri = format!("file://{}/main.sdf", folder.path().display());
+    editor.open(&uri, "solid egg()\n  = length(p) - 1 - floor(p.x)\negg().translate(y: 1)\n");
+    let whole =
+        json!({ "start": { "line": 0, "character": 0 }, "end": { "line": 4, "character": 0 } });
+    let params = json!({ "textDocument": { "uri": uri }, "range": whole });
+    let hints = editor.ask("textDocument/inlayHint", params);
+    let marked = hints.as_array().unwrap().iter().find(|it| it["label"] == "uncertified").unwrap();
+    assert_eq!(marked["position"], json!({ "line": 2, "character": 5 }), "{hints}");
+    assert!(marked["tooltip"].as_str().unwrap().starts_with("A ray may step through"), "{hints}");
+    editor.end();
+}
+
+#[test]
+fn a_file_that_a_scene_imports_may_import_from_above() {
+    let folder = common::folder(&[
+        ("scene.sdf", "import wheel from \"parts/wheel.sdf\"\nwheel()\n"),
+        ("common.sdf", "let size = 0.5\n"),
+        ("parts/wheel.sdf", ""),
+        ("alone/wheel.sdf", ""),
+    ]);
+    let mut editor = Editor::start(folder.path(), json!(["utf-16"]));
+    let text = "import size from \"../common.sdf\"\nsolid wheel() = length(p) - size\n";
+    let uri = |name: &str| format!("file://{}/{name}", folder.path().display());
+    editor.open(&uri("parts/wheel.sdf"), text);
+    assert_eq!(editor.diagnostics(&uri("parts/wheel.sdf")), json!([]));
+    let at = Editor::at(&uri("parts/wheel.sdf"), 1, 30);
+    let declared = editor.ask("textDocument/definition", at.clone());
+    assert_eq!(declared["uri"], uri("common.sdf"));
+    let hover = editor.ask("textDocument/hover", at);
+    assert!(hover["contents"]["value"].as_str().unwrap().contains("let size: number"), "{hover}");
+    // No scene imports this one, so it is a scene of its own.
+    editor.open(&uri("alone/wheel.sdf"), text);
+    let found = editor.diagnostics(&uri("alone/wheel.sdf"));
+    assert!(found[0]["message"].as_str().unwrap().contains("outside the folder"), "{found}");
     editor.end();
 }
 

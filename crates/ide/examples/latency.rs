@@ -9,7 +9,8 @@ use sdfc_ide::{Analysis, NoFiles, complete, diagnostics};
 /// A union of moved shapes of three kinds.
 fn scene(leaves: usize) -> String {
     let leaf = |at: usize| {
-        let shape = ["sphere(0.3)", "box([0.3, 0.2, 0.1])", "torus(r: 0.3, tube: 0.1)"][at % 3];
+        let shape =
+            ["sphere(0.3)", "box([0.3, 0.2, 0.1])", "torus(major: 0.3, minor: 0.1)"][at % 3];
         let (x, z) = (at % 20, at / 20);
         format!("let part{at} = {shape}.translate([{x}, 0, {z}]).rotate(y: {at}deg)\npart{at}\n")
     };
@@ -24,7 +25,7 @@ fn percentile(times: &mut [Duration], part: usize) -> f64 {
 
 fn main() {
     println!("leaves | diagnostics p50, p99 | completion p50, p99 (ms)");
-    for leaves in [1, 30, 300] {
+    for leaves in [1, 30, 300, 3000] {
         let start = scene(leaves);
         let (mut checks, mut completions) = (Vec::new(), Vec::new());
         for at in 0..60 {
@@ -32,7 +33,7 @@ fn main() {
             let typed = &word[..1 + at % word.len()];
             let text = format!("{start}{typed}");
             let before = Instant::now();
-            let found = diagnostics(&Analysis::new("scene.sdf", &text, &NoFiles));
+            let found = diagnostics(&Analysis::new("scene.sdf", &text, &NoFiles), false);
             checks.push(before.elapsed());
             let before = Instant::now();
             let list = complete("scene.sdf", &text, text.len(), &NoFiles, &[]);

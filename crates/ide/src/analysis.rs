@@ -43,6 +43,8 @@ pub struct Occurrence {
 pub struct Analysis {
     pub(crate) sources: Sources,
     pub(crate) file: FileId,
+    /// See [`Resolver::scene_path`].
+    scene_path: String,
     pub(crate) tree: ast::File,
     pub(crate) imports: Vec<Imported>,
     pub(crate) uses: Uses,
@@ -58,7 +60,7 @@ impl Analysis {
         let mut sources = Sources::new();
         let file = sources.add(name, text);
         let inspection = inspect(&mut sources, file, resolver);
-        let mut analysis = Self::of(sources, file, inspection);
+        let mut analysis = Self::of(sources, (file, resolver.scene_path()), inspection);
         analysis.occurrences = analysis.find_occurrences();
         analysis
     }
@@ -68,13 +70,13 @@ impl Analysis {
         let mut sources = Sources::new();
         let file = sources.add(name, text);
         let inspection = inspect_at(&mut sources, file, resolver, cursor);
-        Self::of(sources, file, inspection)
+        Self::of(sources, (file, resolver.scene_path()), inspection)
     }
 
-    fn of(sources: Sources, file: FileId, inspection: Inspection) -> Self {
-        let Inspection { tree, imports, uses, diagnostics } = inspection;
-        let occurrences = Vec::new();
-        Self { sources, file, tree, imports, uses, found: diagnostics, occurrences }
+    fn of(sources: Sources, (file, path): (FileId, &str), inspection: Inspection) -> Self {
+        let Inspection { tree, imports, uses, diagnostics: found } = inspection;
+        let (scene_path, occurrences) = (path.to_owned(), Vec::new());
+        Self { sources, file, scene_path, tree, imports, uses, found, occurrences }
     }
 
     /// The text of the scene.
@@ -109,7 +111,7 @@ impl Analysis {
 
     /// The file that an import of the scene names, if it was read.
     pub(crate) fn imported_file(&self, written: &str) -> Option<&Imported> {
-        let path = locate("", written).ok()?;
+        let path = locate(&self.scene_path, written).ok()?;
         self.imports.iter().find(|import| import.path == path)
     }
 

@@ -22,7 +22,8 @@ pub enum Declared<'a> {
 /// The declaration whose name has this span.
 pub fn declared(analysis: &Analysis, name: Span) -> Option<Declared<'_>> {
     let tree = analysis.tree_of(name.file)?;
-    let item = tree.items.iter().find(|item| Node::Item(item).span().contains(name))?;
+    let at = tree.items.partition_point(|item| Node::Item(item).span().end < name.end);
+    let item = tree.items.get(at).filter(|item| Node::Item(item).span().contains(name))?;
     let mut owner = None;
     for node in nodes(std::slice::from_ref(item)) {
         let found = match node {

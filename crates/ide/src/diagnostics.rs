@@ -35,13 +35,14 @@ pub struct Found {
     pub unused: bool,
 }
 
-/// Returns the diagnostics of the scene. Those of an imported file are shown at the import.
-pub fn diagnostics(analysis: &Analysis) -> Vec<Found> {
-    let of_library = library_files().iter().any(|(_, text)| *text == analysis.text());
-    let shown = analysis.found.iter().filter(|it| {
-        // A file of the library is open: it draws nothing, and that is as it should be.
-        !(of_library && it.code == Code::NOTHING_DRAWN)
-    });
+/// Returns the diagnostics of the scene. Those of an imported file are shown at the import. A file
+/// that another scene imports (`is_imported`) and a file of the library need not draw anything.
+pub fn diagnostics(analysis: &Analysis, is_imported: bool) -> Vec<Found> {
+    let of_library = || library_files().iter().any(|(_, text)| *text == analysis.text());
+    let shown = analysis
+        .found
+        .iter()
+        .filter(|it| it.code != Code::NOTHING_DRAWN || !(is_imported || of_library()));
     shown.map(|it| found(analysis, it)).collect()
 }
 

@@ -1,4 +1,5 @@
-//! Text that an editor shows between the code: names of parameters and inferred types.
+//! Text that an editor shows between the code: names of parameters, inferred types, and which
+//! shapes are uncertified.
 
 use std::ops::Range;
 
@@ -16,6 +17,8 @@ pub enum HintKind {
     Parameter,
     /// The type of the name before it, `: solid`.
     Type,
+    /// The call before it makes a shape whose field is uncertified.
+    Uncertified,
 }
 
 /// A hint.
@@ -25,14 +28,27 @@ pub struct Hint {
     pub at: usize,
     /// Its text.
     pub label: String,
+    /// More about it; empty if there is nothing to say.
+    pub about: String,
     /// Its kind.
     pub kind: HintKind,
 }
 
-/// Returns the hints in a byte range, in the order of the text.
-pub fn hints(analysis: &Analysis, range: Range<usize>) -> Vec<Hint> {
+/// Returns the hints in a byte range, in the order of the text. `uncertified` are the calls that
+/// make uncertified shapes, with the reasons; the compiler knows them.
+pub fn hints(
+    analysis: &Analysis,
+    range: Range<usize>,
+    uncertified: &[(Range<usize>, String)],
+) -> Vec<Hint> {
     let mut hints = parameters(analysis);
     hints.extend(types(analysis));
+    hints.extend(uncertified.iter().map(|(call, reason)| Hint {
+        at: call.end,
+        label: "uncertified".to_owned(),
+        about: format!("A ray may step through this shape: {reason}"),
+        kind: HintKind::Uncertified,
+    }));
     hints.retain(|hint| range.start <= hint.at && hint.at <= range.end);
     hints.sort_by_key(|hint| hint.at);
     hints
@@ -64,7 +80,8 @@ fn parameters(analysis: &Analysis) -> Vec<Hint> {
                 continue;
             }
             let at = argument.value.start as usize;
-            hints.push(Hint { at, label: format!("{name}:"), kind: HintKind::Parameter });
+            let (label, about) = (format!("{name}:"), String::new());
+            hints.push(Hint { at, label, about, kind: HintKind::Parameter });
         }
     }
     hints
@@ -87,7 +104,8 @@ fn types(analysis: &Analysis) -> Vec<Hint> {
     });
     let hint = |name: Span| {
         let ty = analysis.uses.variables.get(&name).filter(|ty| **ty != Type::Error)?;
-        Some(Hint { at: name.end as usize, label: format!(": {ty}"), kind: HintKind::Type })
+        let (at, label) = (name.end as usize, format!(": {ty}"));
+        Some(Hint { at, label, about: String::new(), kind: HintKind::Type })
     };
     names.filter_map(hint).collect()
 }

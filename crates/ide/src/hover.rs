@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use sdfc_diagnostics::Span;
-use sdfc_lang::library::Entry;
+use sdfc_lang::library::{Entry, describe_declaration};
 use sdfc_syntax::{Class, classes};
 
 use crate::analysis::{Analysis, Referent};
@@ -19,6 +19,17 @@ pub struct Hover {
     pub range: Range<usize>,
     /// The text, as Markdown.
     pub markdown: String,
+    /// A scene that shows what the name stands for, if it is an entry of the library.
+    pub example: Option<ExampleScene>,
+}
+
+/// The example of a library entry, a scene of one line.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct ExampleScene {
+    /// The name of the entry.
+    pub name: String,
+    /// The source.
+    pub source: String,
 }
 
 /// Describes the name at a byte offset: its signature, documentation, units, defaults and source,
@@ -41,7 +52,22 @@ pub fn hover(analysis: &Analysis, offset: usize, facts: &mut Facts<'_>) -> Optio
     if let Some(known) = facts_at(analysis, offset, facts) {
         markdown.push_str(&format!("\nHere: {}\n\n{}\n", known.quality, known.cost));
     }
-    Some(Hover { range: range(at.span), markdown })
+    let example = match &at.referent {
+        Referent::Declared(name) => example(*name),
+        Referent::Implicit
+        | Referent::Kernel(_)
+        | Referent::Setting(_)
+        | Referent::Parameter(..)
+        | Referent::Type(_) => None,
+    };
+    Some(Hover { range: range(at.span), markdown, example })
+}
+
+/// The example of a library entry, by the span of its declared name.
+fn example(name: Span) -> Option<ExampleScene> {
+    let entry = describe_declaration(&library().sources, library().declaration(name)?);
+    let is_drawn = matches!(entry.kind, "solid" | "region" | "shape") && !entry.example.is_empty();
+    is_drawn.then_some(ExampleScene { name: entry.name, source: entry.example })
 }
 
 /// Describes a word of the syntax, such as `let` or `exact`.
@@ -54,7 +80,7 @@ fn of_word(analysis: &Analysis, offset: usize) -> Option<Hover> {
         return None;
     }
     let entry = library().entry("syntax", &text[range.clone()])?;
-    Some(Hover { range, markdown: of_entry(entry) })
+    Some(Hover { range, markdown: of_entry(entry), example: None })
 }
 
 fn of_declared(analysis: &Analysis, name: Span) -> Option<String> {

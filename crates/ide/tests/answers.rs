@@ -265,12 +265,12 @@ fn fixes_change_the_source() {
 
 #[test]
 fn diagnostics_have_codes_and_related_positions() {
-    let found = diagnostics(&scene("let a = 1\nlet a = 2\nsphere(a)"));
+    let found = diagnostics(&scene("let a = 1\nlet a = 2\nsphere(a)"), false);
     assert_eq!(found[0].range, 14..15);
     assert_eq!((found[0].code.is_empty(), found[0].related.len()), (false, 1));
     let files = Files(BTreeMap::from([("bad.sdf", "let x = \n")]));
     let found =
-        diagnostics(&Analysis::new("s.sdf", "import x from \"bad.sdf\"\nsphere(x)", &files));
+        diagnostics(&Analysis::new("s.sdf", "import x from \"bad.sdf\"\nsphere(x)", &files), false);
     assert!(
         found.iter().any(|it| it.range == (14..23) && it.message.contains("bad.sdf")),
         "{found:?}"
@@ -293,12 +293,23 @@ fn signatures_know_the_active_parameter() {
 }
 
 #[test]
+fn an_entry_of_the_library_has_an_example_to_draw() {
+    let example = |text: &str| hover(&scene(text), 0, &mut |_| None)?.example;
+    let drawn = example("torus(1, 0.2)\n").map(|it| (it.name, it.source.contains("torus(")));
+    assert_eq!(drawn, Some(("torus".to_owned(), true)));
+    assert_eq!(example("sqrt(1)\n"), None);
+    assert_eq!(example("background(#102030)\n"), None);
+}
+
+#[test]
 fn hints_symbols_folds_selections_and_colours() {
     let text = "// A\n// B\nlet lid = cylinder(1, 0.2)\nlid.color(rgb(1, 0.5, 0))\nbackground(#102030)\nsolid k(r: length = 1)\n  exact\n  = length(p) - r\n";
     let found = scene(text);
-    let hints = hints(&found, 0..text.len());
+    let made = text.find("lid.color").unwrap_or(0);
+    let uncertified = [(made..made + "lid.color(rgb(1, 0.5, 0))".len(), "no constant".to_owned())];
+    let hints = hints(&found, 0..text.len(), &uncertified);
     let labels: Vec<&str> = hints.iter().map(|hint| hint.label.as_str()).collect();
-    assert_eq!(labels, [": solid", "r:", "h:", "r:", "g:", "b:"]);
+    assert_eq!(labels, [": solid", "r:", "h:", "r:", "g:", "b:", "uncertified"]);
     let names: Vec<String> = symbols(&found).into_iter().map(|it| it.name).collect();
     assert_eq!(names, ["lid", "lid.color(rgb(1, 0.5, 0))", "background", "k"]);
     assert_eq!(folds(&found).len(), 2);

@@ -60,9 +60,9 @@ fn ask_whole(scene: &Analysis) {
     let inside = |range: &std::ops::Range<usize>| {
         assert!(text.get(range.clone()).is_some(), "{range:?} in {}", scene.name());
     };
-    diagnostics(scene).iter().for_each(|it| inside(&it.range));
+    diagnostics(scene, false).iter().for_each(|it| inside(&it.range));
     actions(scene, whole.clone());
-    hints(scene, whole).iter().for_each(|it| inside(&(it.at..it.at)));
+    hints(scene, whole, &[]).iter().for_each(|it| inside(&(it.at..it.at)));
     tokens(scene).iter().for_each(|it| inside(&it.range));
     folds(scene).iter().for_each(|it| inside(&it.range));
     symbols(scene).iter().for_each(|it| inside(&it.range));
@@ -76,7 +76,7 @@ fn ask_whole(scene: &Analysis) {
 fn every_request_is_answered_everywhere() {
     for (name, text, folder) in scenes() {
         let scene = Analysis::new(&name, &text, &folder);
-        let found = diagnostics(&scene);
+        let found = diagnostics(&scene, false);
         assert!(
             found.iter().all(|it| it.severity < sdfc_ide::Severity::Error),
             "{name}: {found:?}"

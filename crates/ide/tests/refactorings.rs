@@ -117,7 +117,7 @@ fn a_call_becomes_a_method_call_and_back() {
 #[test]
 fn refactored_examples_have_no_errors() {
     let errors = |text: &str, ignored: &[&str]| -> Vec<Found> {
-        let found = diagnostics(&scene(text)).into_iter();
+        let found = diagnostics(&scene(text), false).into_iter();
         let errors = found.filter(|it| it.severity == Severity::Error);
         errors.filter(|it| !ignored.contains(&it.code)).collect()
     };

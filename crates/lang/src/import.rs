@@ -27,6 +27,13 @@ pub trait Resolver {
     fn read_bytes(&self, path: &str) -> Result<Vec<u8>, String> {
         self.read(path).map(String::into_bytes)
     }
+
+    /// The path of the scene below the folder that paths are relative to; empty for a scene in that
+    /// folder. An editor checks an imported file by itself, and its imports may lead to folders
+    /// above its own.
+    fn scene_path(&self) -> &str {
+        ""
+    }
 }
 
 const WITHOUT_FILES: &str = "this scene was opened without access to files";
@@ -75,12 +82,15 @@ pub fn load(
     (scene, tree): (FileId, &ast::File),
     resolver: &dyn Resolver,
 ) -> (Vec<Imported>, Vec<Diagnostic>) {
-    let folder = folder_of(sources.name(scene)).to_owned();
+    let scene_path = resolver.scene_path();
+    let name = sources.name(scene);
+    let folder = name.strip_suffix(scene_path).filter(|_| !scene_path.is_empty());
+    let folder = folder.unwrap_or_else(|| folder_of(name)).to_owned();
     let mut found = Vec::new();
     let mut loaded: Vec<Imported> = Vec::new();
     let mut known: FxHashMap<String, Option<usize>> = FxHashMap::default();
     let mut done = Vec::new();
-    let mut open = vec![Open { at: None, path: String::new(), imports: imports(tree) }];
+    let mut open = vec![Open { at: None, path: scene_path.to_owned(), imports: imports(tree) }];
     while let Some(file) = open.last_mut() {
         let Some((written, span)) = file.imports.pop() else {
             done.extend(file.at);

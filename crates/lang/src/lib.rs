@@ -54,6 +54,7 @@ pub mod uses;
 use sdfc_diagnostics::{Code, Diagnostic, FileId, Sources, has_errors};
 use sdfc_syntax::ast;
 
+use check::SceneFile;
 pub use check::{check, check_library, check_with_imports};
 pub use elab::{Claimed, CompileValues, Declared, DeclaredPromise, Elaborated, Site};
 pub use import::{NoFiles, Resolver};
@@ -141,7 +142,8 @@ fn check_scene(
     }
     let (imports, of_imports) = import::load(sources, (file, &tree), resolver);
     found.extend(of_imports);
-    let checked = reachability::check(sources, &library, &imports, (file, &tree), uses);
+    let scene = SceneFile { file, tree: &tree, path: resolver.scene_path() };
+    let checked = reachability::check(sources, &library, &imports, scene, uses);
     let parsed = !has_errors(&found);
     // A part that could not be parsed may use or draw the items that warnings call unused.
     found.extend(checked.diagnostics.into_iter().filter(|it| parsed || it.is_error()));

@@ -11,7 +11,7 @@ use rustc_hash::FxHashMap;
 use sdfc_diagnostics::{FileId, Sources, has_errors};
 use sdfc_syntax::ast::{self, Item};
 
-use crate::check::{CheckedItems, check_items};
+use crate::check::{CheckedItems, SceneFile, check_items};
 use crate::import::Imported;
 use crate::library;
 use crate::uses::Uses;
@@ -25,7 +25,7 @@ pub(crate) fn check(
     sources: &Sources,
     library: &[FileId],
     imports: &[Imported],
-    scene: (FileId, &ast::File),
+    scene: SceneFile<'_>,
     uses: Option<Uses>,
 ) -> CheckedItems {
     // File ids are part of every span. So parsed items can be reused only if the library's files
@@ -39,12 +39,14 @@ pub(crate) fn check(
         other = Library::new(library);
         &other
     };
-    let files = imports.iter().map(|import| import.file).chain([scene.0]);
+    let files = imports.iter().map(|import| import.file).chain([scene.file]);
     let reached = library.reached(sources, files.map(|file| sources.text(file)));
     let look = library.look(sources);
     let again = uses.clone();
+    // Who asks about a cursor needs no messages, and the text there is seldom complete.
+    let needs_messages = uses.as_ref().is_none_or(|uses| uses.cursor.is_none());
     let checked = check_items(&reached, look, imports, scene, uses);
-    if has_errors(&checked.diagnostics) {
+    if needs_messages && has_errors(&checked.diagnostics) {
         return check_items(&library.whole(sources), look, imports, scene, again);
     }
     checked

@@ -4,10 +4,11 @@ use std::ops::Range;
 use std::path::Path;
 use std::rc::Rc;
 
+use data_encoding::BASE64;
 use sdfc_ide::{
-    Analysis, SymbolKind, actions, color_presentations, colors, complete, definition, folds,
-    format, highlights, hints, hover, lenses, prepare_rename, references, rename, selection,
-    signature_help, symbols, tokens,
+    Analysis, HintKind, Hover, SymbolKind, actions, color_presentations, colors, complete,
+    definition, folds, format, highlights, hints, hover, lenses, prepare_rename, references,
+    rename, selection, signature_help, symbols, tokens,
 };
 use serde_json::{Value, json};
 
@@ -100,11 +101,16 @@ impl About<'_, '_> {
     fn hover(&mut self, scene: &Analysis) -> Value {
         let offset = self.offset(scene);
         let found = hover(scene, offset, &mut |call| self.documents.facts(scene, call));
-        found.map_or(Value::Null, |it| {
-            json!({
-                "contents": { "kind": "markdown", "value": it.markdown },
-                "range": self.lines(scene).range(it.range),
-            })
+        let Some(Hover { range, mut markdown, example }) = found else { return Value::Null };
+        if let Some(example) = example.filter(|_| self.client.pictures)
+            && let Some(png) = self.documents.picture(example.clone())
+        {
+            let (name, png) = (example.name, BASE64.encode(png));
+            markdown = format!("![{name}](data:image/png;base64,{png})\n\n{markdown}");
+        }
+        json!({
+            "contents": { "kind": "markdown", "value": markdown },
+            "range": self.lines(scene).range(range),
         })
     }
 
@@ -270,18 +276,24 @@ impl About<'_, '_> {
         color_presentations(rgba).into_iter().map(|label| json!({ "label": label })).collect()
     }
 
-    fn hints(&self, scene: &Analysis) -> Value {
+    fn hints(&mut self, scene: &Analysis) -> Value {
+        let uncertified = self.documents.uncertified(scene);
         let lines = self.lines(scene);
-        let found = hints(scene, lines.bytes(&self.params["range"])).into_iter();
+        let found = hints(scene, lines.bytes(&self.params["range"]), &uncertified).into_iter();
         let shown = found.map(|it| {
-            let kind = hint_kind(it.kind);
-            let position = lines.position(it.at);
-            json!({
-                "position": position,
+            let mut shown = json!({
+                "position": lines.position(it.at),
                 "label": it.label,
-                "kind": kind,
-                "paddingRight": kind == 2,
-            })
+                "paddingLeft": it.kind == HintKind::Uncertified,
+                "paddingRight": it.kind == HintKind::Parameter,
+            });
+            if let Some(kind) = hint_kind(it.kind) {
+                shown["kind"] = json!(kind);
+            }
+            if !it.about.is_empty() {
+                shown["tooltip"] = json!(it.about);
+            }
+            shown
         });
         shown.collect()
     }

@@ -11,6 +11,10 @@ pub struct Client {
     pub encoding: Encoding,
     /// True if completions may have gaps to fill in.
     pub snippets: bool,
+    /// True if descriptions may have pictures.
+    pub pictures: bool,
+    /// True if the server may ask for reports of changed files.
+    pub registers_watchers: bool,
 }
 
 impl Client {
@@ -19,10 +23,13 @@ impl Client {
         let capabilities = &params["capabilities"];
         let encodings = capabilities["general"]["positionEncodings"].as_array();
         let utf8 = encodings.is_some_and(|list| list.first() == Some(&json!("utf-8")));
+        let watched = &capabilities["workspace"]["didChangeWatchedFiles"];
         let item = &capabilities["textDocument"]["completion"]["completionItem"];
         Self {
             encoding: if utf8 { Encoding::Utf8 } else { Encoding::Utf16 },
             snippets: item["snippetSupport"] == json!(true),
+            pictures: params["initializationOptions"]["hoverPictures"] == json!(true),
+            registers_watchers: watched["dynamicRegistration"] == json!(true),
         }
     }
 }

@@ -157,11 +157,12 @@ pub fn action_kind(kind: ActionKind) -> &'static str {
     }
 }
 
-/// The kind of a hint.
-pub fn hint_kind(kind: HintKind) -> u8 {
+/// The number of a hint's kind; the protocol has none for uncertified shapes.
+pub fn hint_kind(kind: HintKind) -> Option<u8> {
     match kind {
-        HintKind::Type => 1,
-        HintKind::Parameter => 2,
+        HintKind::Type => Some(1),
+        HintKind::Parameter => Some(2),
+        HintKind::Uncertified => None,
     }
 }
 

@@ -87,6 +87,8 @@ pub struct Question<'d> {
     /// revision are about the same scene.
     pub revision: u64,
     pub(crate) open: BTreeMap<PathBuf, String>,
+    /// The folder that the imports of the scene stay in.
+    pub(crate) root: PathBuf,
     pub(crate) disk: &'d dyn Disk,
     pub(crate) connection: &'d Connection,
     pub(crate) reply: Reply,
@@ -100,7 +102,7 @@ impl Question<'_> {
 
     /// Runs a function with the resolver for the imports of the scene.
     pub fn with_resolver<T>(&self, run: impl FnOnce(&dyn Resolver) -> T) -> T {
-        run(&resolver(self.name.as_ref(), &self.open, self.disk))
+        run(&resolver(&self.root, self.name.as_ref(), &self.open, self.disk))
     }
 
     /// Sends the answer, unless the question was cancelled.

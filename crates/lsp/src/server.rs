@@ -38,6 +38,9 @@ pub fn serve(
         "serverInfo": { "name": "sdfc", "version": env!("CARGO_PKG_VERSION") },
     });
     connection.initialize_finish(id, result).map_err(|e| e.to_string())?;
+    if client.registers_watchers {
+        connection.sender.send(watch_scenes()).map_err(|e| e.to_string())?;
+    }
     let (questions, waiting) = channel();
     std::thread::scope(|scope| {
         scope.spawn(|| draw.answer_all(&Questions::new(waiting)));
@@ -57,6 +60,16 @@ pub fn serve(
         server.cancel(|_| true)?;
         served
     })
+}
+
+/// The request for reports of scenes that other programs change.
+fn watch_scenes() -> Message {
+    let options = json!({ "watchers": [{ "globPattern": "**/*.sdf" }] });
+    let method = "workspace/didChangeWatchedFiles";
+    let registration = json!({ "id": "scenes", "method": method, "registerOptions": options });
+    let params = json!({ "registrations": [registration] });
+    let id = RequestId::from("watch scenes".to_owned());
+    Message::Request(Request { id, method: "client/registerCapability".to_owned(), params })
 }
 
 /// The folders that the editor has open.
@@ -191,6 +204,7 @@ impl<'c> Server<'c, 'c> {
             text,
             revision: self.revision,
             open: self.documents.open().clone(),
+            root: self.documents.root(&file),
             disk: self.disk,
             connection: self.connection,
             reply,
@@ -265,7 +279,7 @@ impl<'c> Server<'c, 'c> {
         let Some(scene) = self.documents.analysis(file) else { return json!([]) };
         let encoding = self.client.encoding;
         let lines = Lines::new(scene.text(), encoding);
-        let found = diagnostics(&scene);
+        let found = diagnostics(&scene, self.documents.is_imported(file));
         let shown =
             found.iter().map(|it| diagnostic(&self.documents, &scene, &lines, it, encoding));
         shown.collect()

@@ -231,14 +231,32 @@ impl Scene {
     /// [`Error::Codegen`] if the scene cannot be lowered, [`Error::NotPlanar`] and
     /// [`Error::Spacing`] if isolines cannot be drawn.
     pub fn painter(&self, options: &PictureOptions) -> Result<Painter<'_>, Error> {
+        self.painter_with(options, Gpu::new)
+    }
+
+    /// As [`Scene::painter`], on a GPU that is open. Opening one takes longer than drawing a small
+    /// picture.
+    ///
+    /// # Errors
+    ///
+    /// As [`Scene::painter`].
+    pub fn painter_on(&self, gpu: &Gpu, options: &PictureOptions) -> Result<Painter<'_>, Error> {
+        self.painter_with(options, || Ok(gpu.clone()))
+    }
+
+    fn painter_with(
+        &self,
+        options: &PictureOptions,
+        open: impl FnOnce() -> Result<Gpu, RenderError>,
+    ) -> Result<Painter<'_>, Error> {
         let start = Instant::now();
         let method = options.method.unwrap_or(self.method());
         let samples = options.samples.or(self.program.settings.samples).unwrap_or(1);
         let samples = sample_offsets(samples)?;
         let gpu = match options.backend {
-            Backend::Gpu => Ok(Gpu::new()?),
+            Backend::Gpu => Ok(open()?),
             Backend::Cpu => Err(None),
-            Backend::Auto => match Gpu::new() {
+            Backend::Auto => match open() {
                 Ok(gpu) => self.faster_on_cpu(&gpu, method).map_or(Ok(gpu), |why| Err(Some(why))),
                 Err(error) => Err(Some(format!("{error}; drawn on the CPU"))),
             },

@@ -71,6 +71,30 @@ impl Scene {
         })
     }
 
+    /// Returns the calls that make a shape whose field is uncertified, each with the reason. The
+    /// ranges are those of whole calls, in bytes of the scene's own file, in the order of the text.
+    ///
+    /// ```
+    /// let text = "solid egg()\n  = length(p) - 1 - floor(p.x)\negg().translate(y: 1)";
+    /// let scene = sdfc::Compiler::new().compile("a.sdf", text)?;
+    /// let [(call, _reason)] = &scene.uncertified_calls()[..] else { panic!("it is one") };
+    /// assert_eq!(&text[call.clone()], "egg()");
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn uncertified_calls(&self) -> Vec<(Range<usize>, String)> {
+        let own = sdfc_diagnostics::FileId(0);
+        let reason = |site: &Site| {
+            let found = self.report.uncertified.iter().find(|it| it.shape == site.shape)?;
+            let range = site.span.start as usize..site.span.end as usize;
+            Some((range, found.reason.to_string()))
+        };
+        let sites = self.sites().iter().filter(|site| site.span.file == own);
+        let mut calls: Vec<_> = sites.filter_map(reason).collect();
+        calls.sort_by_key(|(range, _)| (range.start, range.end));
+        calls.dedup();
+        calls
+    }
+
     /// The operations of one evaluation of the scene, without loops that stand for similar parts.
     pub(crate) fn operations_unrolled(&self) -> Option<usize> {
         *self.operations.get_or_init(|| {

@@ -4,6 +4,8 @@ use std::path::{Path, PathBuf};
 
 use sdfc_examples::BASICS;
 
+use crate::small_pictures::PictureKey;
+
 /// The most edited versions of an example that are kept.
 const MAX_VERSIONS: u32 = 1000;
 
@@ -16,17 +18,43 @@ pub struct Example {
     pub source: &'static str,
 }
 
-/// All examples, by name.
+/// The scene that is shown if no file is named.
+pub const WELCOME: Example = Example { name: "welcome", source: include_str!("welcome.sdf") };
+
+/// The welcome scene, and all other examples by name.
 pub const EXAMPLES: &[Example] = &{
-    let mut examples = [Example { name: "", source: "" }; BASICS.len()];
+    let mut examples = [WELCOME; BASICS.len() + 1];
     let mut index = 0;
     while index < BASICS.len() {
         let (name, source) = BASICS[index];
-        examples[index] = Example { name, source };
         index += 1;
+        examples[index] = Example { name, source };
     }
     examples
 };
+
+/// One of [`EXAMPLES`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct ExampleId(usize);
+
+impl ExampleId {
+    /// All examples, in order.
+    pub fn all() -> impl Iterator<Item = Self> {
+        (0..EXAMPLES.len()).map(Self)
+    }
+
+    /// The example.
+    pub fn example(self) -> Example {
+        EXAMPLES.get(self.0).copied().unwrap_or(WELCOME)
+    }
+}
+
+impl PictureKey for ExampleId {
+    fn scene(&self) -> (&str, &str) {
+        let Example { name, source } = self.example();
+        (name, source)
+    }
+}
 
 impl Example {
     /// Copies the example to a folder, which is created. An existing file is kept: the user may
@@ -81,6 +109,7 @@ impl Example {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::test_support::model;
 
     #[test]
     fn every_scene_of_the_examples_folder_is_included_and_has_a_description() {
@@ -90,10 +119,19 @@ mod tests {
         let mut names: Vec<_> =
             scenes.map(|path| path.file_stem().unwrap().to_string_lossy().into_owned()).collect();
         names.sort();
-        assert_eq!(names, EXAMPLES.iter().map(|example| example.name).collect::<Vec<_>>());
+        let (first, others) = EXAMPLES.split_first().unwrap();
+        assert_eq!(names, others.iter().map(|example| example.name).collect::<Vec<_>>());
+        assert_eq!(first.name, WELCOME.name);
         for example in EXAMPLES {
             assert!(!example.summary().is_empty(), "{}", example.name);
         }
+    }
+
+    #[test]
+    fn the_welcome_scene_has_sliders() {
+        let model = model(WELCOME.source);
+        let names: Vec<_> = model.scene.params().iter().map(|param| param.name.clone()).collect();
+        assert_eq!(names, ["hole", "soft", "paint"]);
     }
 
     #[test]
@@ -105,6 +143,7 @@ mod tests {
         EXAMPLES[0].file_in(&folder.path().join("new")).unwrap();
         assert_eq!(std::fs::read_to_string(&path).unwrap(), "box(1)");
     }
+
     #[test]
     fn a_restored_example_keeps_the_edited_version() {
         let folder = tempfile::tempdir().unwrap();

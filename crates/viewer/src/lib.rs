@@ -34,6 +34,7 @@ pub mod render;
 pub mod scene;
 pub mod session;
 pub mod settings;
+pub mod small_pictures;
 #[cfg(test)]
 mod test_support;
 pub mod text_search;

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use sdfc_viewer::app::WindowError;
-use sdfc_viewer::examples::EXAMPLES;
+use sdfc_viewer::examples::WELCOME;
 use sdfc_viewer::settings::examples_folder;
 
 const USAGE: &str = "usage: sdfc-view [FILE]\n\n\
@@ -20,8 +20,6 @@ const DEVICE_LOST: &str = "error: the GPU was lost while the window was drawn, a
 const NO_WINDOW: &str = "a window needs a display and a driver for Vulkan, Metal, DirectX 12 or \
     OpenGL; Mesa's software drivers work (on Debian: mesa-vulkan-drivers or libgl1-mesa-dri). \
     `sdfc render --backend cpu` needs neither";
-/// The example that is shown if no file is named. It has params to drag.
-const FIRST_EXAMPLE: &str = "params";
 
 #[allow(clippy::print_stderr, reason = "a program prints messages")]
 fn main() -> ExitCode {
@@ -78,12 +76,11 @@ fn can_be_created(path: &Path) -> bool {
 
 #[allow(clippy::print_stderr, reason = "a program prints messages")]
 fn example() -> ExitCode {
-    let first = EXAMPLES.iter().find(|example| example.name == FIRST_EXAMPLE);
-    let Some((example, folder)) = first.zip(examples_folder()) else {
+    let Some(folder) = examples_folder() else {
         eprintln!("{USAGE}");
         return ExitCode::from(2);
     };
-    match example.file_in(&folder) {
+    match WELCOME.file_in(&folder) {
         Ok(path) => window(&path),
         Err(error) => {
             eprintln!("error: {error}");

@@ -25,7 +25,7 @@ export class Server implements vscode.Disposable {
     const run = { command: path, args: ["lsp"] };
     const client = new LanguageClient("sdf", "sdfc", { run, debug: run }, {
       documentSelector: [{ language: "sdf" }],
-      synchronize: { fileEvents: vscode.workspace.createFileSystemWatcher("**/*.sdf") },
+      initializationOptions: { hoverPictures: true },
     });
     this.client = client;
     try {

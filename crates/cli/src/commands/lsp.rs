@@ -2,8 +2,10 @@
 
 mod preview;
 
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
+use sdfc::{Backend, PictureOptions, no_progress};
 use sdfc_lsp::{Compile, Compiled, Connection, Disk, Resolver, ShapeFacts, serve};
 
 use crate::cache::user_folder;
@@ -17,6 +19,8 @@ const MAX_DEPTH: usize = 4;
 const MAX_ENTRIES: usize = 4096;
 /// At most this many scenes are found.
 const MAX_SCENES: usize = 256;
+/// Width and height of the pictures of library entries in pixels.
+const EXAMPLE_SIZE: [u32; 2] = [160, 120];
 
 /// Answers an editor until it asks to end.
 ///
@@ -64,7 +68,7 @@ impl Disk for Files {
                     if depth < MAX_DEPTH && !hidden {
                         open.push((path, depth + 1));
                     }
-                } else if path.extension().is_some_and(|extension| extension == "sdf") {
+                } else if is_scene(&path) {
                     scenes.push(path);
                 }
             }
@@ -72,21 +76,54 @@ impl Disk for Files {
         scenes
     }
 
+    fn scenes_in(&self, folder: &Path) -> Vec<PathBuf> {
+        let entries = std::fs::read_dir(folder).into_iter().flatten().flatten().take(MAX_ENTRIES);
+        let paths = entries.map(|entry| entry.path());
+        paths.filter(|path| is_scene(path)).take(MAX_SCENES).collect()
+    }
+
     fn library(&self) -> Option<PathBuf> {
         self.library.clone()
     }
+}
+
+fn is_scene(path: &Path) -> bool {
+    path.extension().is_some_and(|extension| extension == "sdf")
 }
 
 /// The compiler of this program.
 struct Compiler;
 
 impl Compile for Compiler {
-    fn compile(&self, name: &str, text: &str, resolver: &dyn Resolver) -> Option<Compiled> {
+    fn compile(
+        &self,
+        name: &str,
+        text: &str,
+        resolver: &dyn Resolver,
+    ) -> Option<Box<dyn Compiled>> {
         let scene = sdfc::Compiler::new().resolver(resolver).compile(name, text).ok()?;
-        Some(Box::new(move |call| {
-            let facts = scene.shape_facts(call)?;
-            Some(ShapeFacts { cost: facts.cost(), quality: facts.quality })
-        }))
+        Some(Box::new(CompiledScene(scene)))
+    }
+
+    fn picture(&self, name: &str, text: &str) -> Option<Vec<u8>> {
+        let scene = sdfc::Compiler::new().compile(name, text).ok()?;
+        let options = PictureOptions::new().size(EXAMPLE_SIZE).backend(Backend::Cpu);
+        let picture = scene.render(&options.samples(4), &mut no_progress).ok()?;
+        picture.image.to_png().ok()
+    }
+}
+
+/// A compiled scene.
+struct CompiledScene(sdfc::Scene);
+
+impl Compiled for CompiledScene {
+    fn facts(&self, call: Range<usize>) -> Option<ShapeFacts> {
+        let facts = self.0.shape_facts(call)?;
+        Some(ShapeFacts { cost: facts.cost(), quality: facts.quality })
+    }
+
+    fn uncertified(&self) -> Vec<(Range<usize>, String)> {
+        self.0.uncertified_calls()
     }
 }
 

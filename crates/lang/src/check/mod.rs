@@ -83,8 +83,18 @@ pub fn check_with_imports(
     imports: &[Imported],
     scene: (FileId, &ast::File),
 ) -> (Program, Vec<Diagnostic>) {
+    let scene = SceneFile { file: scene.0, tree: scene.1, path: "" };
     let checked = check_items(&whole(library), None, imports, scene, None);
     (checked.program, checked.diagnostics)
+}
+
+/// The file that is checked as a scene.
+#[derive(Clone, Copy)]
+pub(crate) struct SceneFile<'a> {
+    pub file: FileId,
+    pub tree: &'a ast::File,
+    /// See [`Resolver::scene_path`](import::Resolver::scene_path).
+    pub path: &'a str,
 }
 
 /// The result of [`check_items`].
@@ -102,20 +112,20 @@ pub(crate) fn check_items<'a>(
     library: &[(FileId, Vec<&'a Item>)],
     look: Option<&'a ast::File>,
     imports: &'a [Imported],
-    scene: (FileId, &'a ast::File),
+    scene: SceneFile<'a>,
     uses: Option<Uses>,
 ) -> CheckedItems {
     let mut checker = Checker::new(library);
-    checker.uses = uses;
+    (checker.uses, checker.scene_path) = (uses, scene.path);
     for import in imports {
         let module = checker.add_module(&import.tree.items, Some(&import.path), false);
         checker.modules[module].whole = import.whole;
     }
-    let module = checker.add_module(&scene.1.items, Some(""), false);
+    let module = checker.add_module(&scene.tree.items, Some(""), false);
     for (import, module) in imports.iter().zip(library.len()..) {
         checker.check_imported(module, &import.tree);
     }
-    checker.check_scene(module, scene);
+    checker.check_scene(module, scene.file, scene.tree);
     if let Some(look) = look {
         let module = checker.add_module(&look.items, None, true);
         checker.check_look(module, look);
@@ -209,6 +219,8 @@ enum State<Id> {
 #[derive(Debug, Default)]
 struct Checker<'a> {
     modules: Vec<names::Module<'a>>,
+    /// The path of the scene below the folder that import paths are relative to.
+    scene_path: &'a str,
     /// Public names of the library.
     library: FxHashMap<&'a str, names::Entry>,
     settings: Vec<SettingRow>,

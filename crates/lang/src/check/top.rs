@@ -24,7 +24,7 @@ enum TopLevel<'a> {
 
 impl<'a> Checker<'a> {
     /// Checks the scene's file.
-    pub(super) fn check_scene(&mut self, module: usize, (file, ast): (FileId, &'a ast::File)) {
+    pub(super) fn check_scene(&mut self, module: usize, file: FileId, ast: &'a ast::File) {
         self.import(module, ast);
         self.find_union(Dim::Three);
         for item in self.named_items(module, ast) {
@@ -102,7 +102,8 @@ impl<'a> Checker<'a> {
         self.body.module = module;
         for item in &ast.items {
             let Item::Import(import) = item else { continue };
-            let from = self.modules[module].path.unwrap_or("");
+            let path = self.modules[module].path.filter(|path| !path.is_empty());
+            let from = path.unwrap_or(self.scene_path);
             let path = import::locate(from, &import.path.text).ok();
             // A file comes after those that it imports, so an import of a later file is circular.
             let earlier = &self.modules[..module];

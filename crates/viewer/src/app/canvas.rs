@@ -12,7 +12,7 @@ use sdfc_render::{CAPPED, HIT};
 use super::handle_overlay::HandleOverlay;
 use super::shape_outline::ShapeOutline;
 use super::theme::{self, card};
-use super::{axes_overlay, legend_card};
+use super::{bounds_overlay, legend_card, view_gizmo};
 use crate::render::picture::Picture;
 use crate::render::pixel_info::PixelInfo;
 use crate::session::Session;
@@ -54,8 +54,8 @@ impl Canvas {
             waiting(ui, rect, session);
         }
         self.outline.show(ui, [rect, shown], session);
-        if let Some(picture) = session.picture.as_deref().filter(|_| session.show_axes) {
-            axes_overlay::show(ui, shown, picture);
+        if let Some(picture) = session.picture.as_deref().filter(|_| session.show_bounds) {
+            bounds_overlay::show(ui, shown, picture);
         }
         if session.is_view_pending() {
             pending_view(ui, rect, session);
@@ -79,6 +79,7 @@ impl Canvas {
             legend_card::show(ui, rect, &picture.legend);
         }
         pixel_info(ui, &response, [rect, shown], session);
+        view_gizmo::show(ui, rect, session);
         self.handles.show(ui, [rect, shown], session);
         let clicked = response.interact_pointer_pos().filter(|_| response.clicked());
         if clicked.is_some() {

@@ -112,8 +112,8 @@ fn camera(ui: &mut Ui, session: &mut Session, actions: &mut Vec<Action>) {
         if checkbox.on_hover_text("Parallel rays, without perspective (P).").changed() {
             session.move_camera(|camera| camera.set_parallel(parallel));
         }
-        ui.checkbox(&mut session.show_axes, "axes")
-            .on_hover_text("Show the axes, and the scene's bounds if it has any (B).");
+        ui.checkbox(&mut session.show_bounds, "bounds")
+            .on_hover_text("Show the scene's bounds, if it has any (B).");
         if let Some(fov) = camera.fov() {
             let mut degrees = fov.to_degrees();
             let drag = egui::DragValue::new(&mut degrees).range(2.0..=150.0).speed(0.3);

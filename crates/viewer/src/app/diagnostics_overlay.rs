@@ -1,5 +1,7 @@
 //! Errors and warnings over the picture.
 
+use std::sync::Arc;
+
 use eframe::egui::text::{LayoutJob, TextFormat};
 use eframe::egui::{self, Color32, FontId, RichText, Ui, vec2};
 
@@ -9,16 +11,59 @@ use super::open_panels::OpenPanels;
 use super::theme::{self, card};
 use crate::compile::diagnostics::ShownDiagnostic;
 use crate::session::Session;
+use crate::session::draft::Draft;
 
 /// The fraction of the picture's height that errors and warnings may cover.
 const MAX_COVERED: f32 = 0.4;
 
-/// Shows errors in the upper left corner unless they are folded, and warnings if they are unfolded.
-pub fn show(ui: &mut Ui, session: &Session, panels: &mut OpenPanels, actions: &mut Vec<Action>) {
-    let diagnostics = &session.diagnostics;
-    if diagnostics.all.is_empty() {
-        return;
+/// After this long without an edit in the window, new errors cover the picture, in seconds. The
+/// editor underlines them at once.
+const TYPING_PAUSE: f64 = 1.0;
+
+/// The overlay, which waits until the user stops typing before it covers the picture.
+#[derive(Debug, Default)]
+pub struct DiagnosticsOverlay {
+    is_shown: bool,
+    /// The text of the last frame, and the time at which it was edited in the window.
+    text: Arc<str>,
+    edited: Option<f64>,
+}
+
+impl DiagnosticsOverlay {
+    /// Shows errors in the upper left corner unless they are folded, and warnings if they are
+    /// unfolded.
+    pub fn show(
+        &mut self,
+        ui: &Ui,
+        session: &Session,
+        panels: &mut OpenPanels,
+        actions: &mut Vec<Action>,
+    ) {
+        let waits = self.is_typing(ui, session) && !self.is_shown;
+        self.is_shown = !session.diagnostics.all.is_empty() && !waits;
+        if self.is_shown {
+            cards(ui, session, panels, actions);
+        }
     }
+
+    /// True if the shown text was edited in the window a moment ago.
+    fn is_typing(&mut self, ui: &Ui, session: &Session) -> bool {
+        let now = ui.input(|input| input.time);
+        let text = session.shown_text();
+        if !Arc::ptr_eq(text, &self.text) {
+            let is_edited = session.shown_draft().is_some_and(Draft::is_edited);
+            (self.text, self.edited) = (Arc::clone(text), is_edited.then_some(now));
+        }
+        let rest = self.edited.map_or(0.0, |edited| edited + TYPING_PAUSE - now);
+        if rest > 0.0 {
+            ui.ctx().request_repaint_after_secs(rest as f32);
+        }
+        rest > 0.0
+    }
+}
+
+fn cards(ui: &Ui, session: &Session, panels: &mut OpenPanels, actions: &mut Vec<Action>) {
+    let diagnostics = &session.diagnostics;
     let rect = ui.max_rect();
     let errors = diagnostics.errors();
     let area = egui::Area::new(ui.scope_id().with("diagnostics")).order(egui::Order::Middle);

@@ -7,7 +7,7 @@ use eframe::egui::{
 use glam::{DMat3, DVec3};
 use sdfc_render::Pose;
 
-use super::axes_overlay::{AXES, project_line};
+use super::bounds_overlay::{AXES, project_line};
 use super::theme;
 use crate::session::Session;
 use crate::session::handle_state::ValueHandle;

@@ -15,7 +15,7 @@ pub const SIDES: [(Key, Side); 6] = [
     (Key::Num8, Side::Bottom),
 ];
 
-const ROWS: [(&str, &str); 27] = [
+const ROWS: [(&str, &str); 28] = [
     ("drag", "orbit around the pivot"),
     ("right or middle drag", "pan"),
     ("wheel", "zoom at the pointer"),
@@ -26,8 +26,9 @@ const ROWS: [(&str, &str); 27] = [
     ("F", "fit view: see the whole scene"),
     ("H, Home", "reset camera: the scene's own"),
     ("1 2 3 4 7 8", "front, back, right, left, top, bottom"),
+    ("click the end of an axis", "look along it"),
     ("P", "perspective or orthographic"),
-    ("B", "show axes and bounds"),
+    ("B", "show the scene's bounds"),
     ("C", "copy the camera to paste into the scene"),
     ("V", "next view"),
     ("Space", "play or pause the time"),

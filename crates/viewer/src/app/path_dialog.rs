@@ -8,12 +8,13 @@ use super::theme;
 use crate::session::Session;
 
 /// The contents of a new scene.
-pub const NEW_SCENE: &str = "// A new scene. Drag a number in the panel Code, or edit this file.\n\
-    sphere(0.5).translate(y: 0.5).color(#d9784a)\n\
-    plane(y: 0).color(#8b959c)\n\n\
-    sun(direction: [1, 2, 1.5], shadow: hard)\n\
-    ambient(strength: 0.25)\n\
-    background(#b8c4d0)\n";
+pub const NEW_SCENE: &str =
+    "// A new scene. Type, or hold Alt and drag a number. F1 lists all keys.
+\
+    sphere(0.5).translate(y: 0.5).color(#e07a4f)
+\
+    plane()
+";
 /// The most files of a folder that are listed.
 const MAX_LISTED: usize = 200;
 

@@ -11,14 +11,16 @@ use super::canvas::Canvas;
 use super::code::panel::{self as code_panel, CodeMode};
 use super::code::text_state::{editor_id, record_replaced};
 use super::code::{self, CodeEditor};
+use super::diagnostics_overlay::DiagnosticsOverlay;
+use super::examples_dialog::ExamplesDialog;
 use super::export_dialog::ExportDialog;
 use super::monitor::Monitor;
 use super::open_panels::OpenPanels;
 use super::path_dialog::{Chosen, NEW_SCENE, PathDialog};
 use super::unsaved_dialog::{Exit, UnsavedDialog};
 use super::{
-    controls, diagnostics_overlay, help, missing_file, path_dialog, scene_menu, shortcuts,
-    status_bar, theme, toolbar,
+    controls, help, hints, missing_file, path_dialog, scene_menu, shortcuts, status_bar, theme,
+    toolbar,
 };
 use crate::session::Session;
 use crate::settings::Settings;
@@ -40,11 +42,15 @@ pub struct App {
     clipboard: Option<arboard::Clipboard>,
     message: Option<(String, Instant)>,
     panels: OpenPanels,
+    /// Where the panel "Code" was shown in the last frame.
+    code_rect: Option<egui::Rect>,
+    diagnostics_overlay: DiagnosticsOverlay,
     code_mode: CodeMode,
     code_editor: CodeEditor,
     export: ExportDialog,
     unsaved: UnsavedDialog,
     path_dialog: PathDialog,
+    examples: ExamplesDialog,
     /// True once the user has confirmed that the window closes.
     may_close: bool,
     /// True if the stored texts of the scene are those that this window restored or stored.
@@ -81,11 +87,14 @@ impl App {
             clipboard: None,
             message: None,
             panels: OpenPanels::default(),
+            code_rect: None,
+            diagnostics_overlay: DiagnosticsOverlay::default(),
             code_mode: CodeMode::default(),
             code_editor: CodeEditor::default(),
             export: ExportDialog::default(),
             unsaved: UnsavedDialog::default(),
             path_dialog: PathDialog::default(),
+            examples: ExamplesDialog::default(),
             may_close: false,
             owns_stored_texts,
             settings,
@@ -100,6 +109,7 @@ impl App {
         // Textures were lost with the device.
         self.canvas = Canvas::default();
         self.code_editor.move_to_window();
+        self.examples.move_to_window();
         let mut context = self.context.lock().unwrap_or_else(PoisonError::into_inner);
         code::move_editors(&context, ctx, self.session.path(), &self.session.tabs());
         *context = ctx.clone();
@@ -176,12 +186,15 @@ impl App {
         match chosen {
             Some(scene_menu::Choice::Open(path)) => self.leave(&ctx, Exit::Open(path)),
             Some(scene_menu::Choice::Ask(purpose)) => self.path_dialog.open(purpose, &self.session),
+            Some(scene_menu::Choice::ShowExamples) => self.examples.open(),
             Some(scene_menu::Choice::Failed(why)) => actions.push(Action::Message(why)),
             None => {}
         }
         let message = self.message.as_ref().map(|(text, _)| text.as_str());
         let line = egui::Panel::bottom("status").frame(bar_frame(ui));
-        line.show(ui, |ui| status_bar::show(ui, &mut self.session, message));
+        let pointer = ctx.input(|input| input.pointer.hover_pos());
+        let hint = hints::hint(&self.session, pointer, self.picture_rect(), self.code_rect.take());
+        line.show(ui, |ui| status_bar::show(ui, &mut self.session, message, hint));
         self.session.handles.hovered = None;
         self.panels.keep_room_for_picture(ui.available_width());
         let most = (ui.available_width() - MIN_PICTURE).max(220.0);
@@ -192,11 +205,12 @@ impl App {
         }
         if self.panels.code {
             let most = (ui.available_width() - MIN_PICTURE).max(220.0);
-            let size = (ui.available_width() * 0.48).clamp(270.0, 440.0);
+            let size = (ui.available_width() * 0.48).clamp(270.0, 520.0);
             let panel = egui::Panel::left("code").default_size(size).min_size(220.0).max_size(most);
             let session = &mut self.session;
             let state = (&mut self.code_mode, &mut self.code_editor);
-            panel.show(ui, |ui| code_panel::show(ui, session, state, &mut actions));
+            let shown = panel.show(ui, |ui| code_panel::show(ui, session, state, &mut actions));
+            self.code_rect = Some(shown.response.rect);
         }
         let lit = self.code_editor.lit_position(&self.session).filter(|_| self.panels.code);
         self.session.select_handles(lit.as_ref());
@@ -207,13 +221,19 @@ impl App {
                 let code = self.session.code_at(clicked);
                 self.code_editor.light(code, &mut self.session);
             }
-            diagnostics_overlay::show(ui, &self.session, &mut self.panels, &mut actions);
+            let overlay = &mut self.diagnostics_overlay;
+            overlay.show(ui, &self.session, &mut self.panels, &mut actions);
         });
         show_drop_hint(&ctx);
         help::show(&ctx, &mut self.panels.help);
         self.export.show(&ctx, &self.session, &mut self.panels.export);
         if let Some(path) = missing_file::show(&ctx, &self.session) {
             self.create(&ctx, &path);
+        }
+        match self.examples.show(&ctx) {
+            Some(Ok(path)) => self.leave(&ctx, Exit::Open(path)),
+            Some(Err(why)) => actions.push(Action::Message(why)),
+            None => {}
         }
         if let Some(exit) = self.path_dialog.show(&ctx, &self.session) {
             self.leave_for(&ctx, exit);

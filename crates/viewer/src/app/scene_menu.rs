@@ -21,6 +21,8 @@ pub enum Choice {
     Open(PathBuf),
     /// Ask for a path.
     Ask(Purpose),
+    /// Show the examples.
+    ShowExamples,
     /// An example could not be written; why.
     Failed(String),
 }
@@ -30,7 +32,8 @@ pub fn show(ui: &mut Ui, session: &Session, settings: &mut Settings) -> Option<C
     let path = session.path();
     let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let mut choice = None;
-    let menu = ui.menu_button(RichText::new(name).strong(), |ui| {
+    let button = (RichText::new(&name).strong(), RichText::new("▾").monospace());
+    let menu = ui.menu_button(button, |ui| {
         ui.set_min_width(180.0);
         for (purpose, text, help) in [
             (Purpose::New, "New…", "Create a scene."),
@@ -48,10 +51,12 @@ pub fn show(ui: &mut Ui, session: &Session, settings: &mut Settings) -> Option<C
         }
         ui.separator();
         restore_example(ui, session, &mut choice);
-        let menu = ui.menu_button("Examples", |ui| examples(ui, &mut choice));
-        menu.response.on_hover_text(
-            "Example scenes, each about one feature. Opening one copies it to a file of yours.",
-        );
+        let text = "Example scenes, each about one feature. Opening one copies it to a file of \
+                    yours.";
+        if ui.button("Examples…").on_hover_text(text).clicked() {
+            choice = Some(Choice::ShowExamples);
+            ui.close();
+        }
         let menu = ui.menu_button("Open recent", |ui| recent(ui, path, settings, &mut choice));
         menu.response.on_hover_text("Scenes that were open before, the last one first.");
         let menu = ui.menu_button("In this folder", |ui| in_folder(ui, path, &mut choice));
@@ -63,6 +68,8 @@ pub fn show(ui: &mut Ui, session: &Session, settings: &mut Settings) -> Option<C
             theme::set_light(ui.ctx(), settings.light);
         }
     });
+    // The arrow is no part of the name.
+    menu.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
     let text = format!("{}\n\nOpens and creates scenes.", path.display());
     menu.response.on_hover_text(text);
     choice
@@ -82,26 +89,6 @@ fn restore_example(ui: &mut Ui, session: &Session, choice: &mut Option<Choice>) 
         *choice = Some(restored.map_or_else(Choice::Failed, Choice::Open));
         ui.close();
     }
-}
-
-fn examples(ui: &mut Ui, choice: &mut Option<Choice>) {
-    ui.set_min_width(160.0);
-    let Some(folder) = examples_folder() else {
-        ui.label("no home folder to copy them to");
-        return;
-    };
-    let scroll = egui::ScrollArea::vertical().max_height(460.0);
-    scroll.show(ui, |ui| {
-        for example in EXAMPLES {
-            let copied_to = format!("\n\nOpens a copy in {}.", folder.display());
-            let button = ui.button(example.name).on_hover_text(example.summary() + &copied_to);
-            if button.clicked() {
-                let copied = example.file_in(&folder);
-                *choice = Some(copied.map_or_else(Choice::Failed, Choice::Open));
-                ui.close();
-            }
-        }
-    });
 }
 
 fn recent(ui: &mut Ui, current: &Path, settings: &Settings, choice: &mut Option<Choice>) {

@@ -45,7 +45,7 @@ pub fn handle(
         session.move_camera(|camera| camera.set_parallel(!camera.is_parallel()));
     }
     if pressed(Key::B) {
-        session.show_axes = !session.show_axes;
+        session.show_bounds = !session.show_bounds;
     }
     if pressed(Key::C)
         && let Some(camera) = session.camera()

@@ -13,8 +13,9 @@ use crate::session::Session;
 /// Below this width in points the size of the picture and the evaluations are left out.
 const WIDE: f32 = 760.0;
 
-/// Shows the line. A message takes precedence over a problem, and that over the GPU's name.
-pub fn show(ui: &mut Ui, session: &mut Session, message: Option<&str>) {
+/// Shows the line. A message takes precedence over a problem, and that over the GPU's name. Where
+/// there is no room for the hint, it is left out.
+pub fn show(ui: &mut Ui, session: &mut Session, message: Option<&str>, hint: &str) {
     ui.horizontal(|ui| {
         if let Some(picture) = session.picture.as_deref() {
             metrics(ui, picture);
@@ -29,8 +30,20 @@ pub fn show(ui: &mut Ui, session: &mut Session, message: Option<&str>) {
                 (None, None, Some(model)) => device(ui, model),
                 (None, None, None) => {}
             }
+            show_hint(ui, hint);
         });
     });
+}
+
+/// Shows what the mouse and the keys do, in the middle of the rest of the line.
+fn show_hint(ui: &mut Ui, hint: &str) {
+    let font = egui::TextStyle::Small.resolve(ui.style());
+    let galley = ui.painter().layout_no_wrap(hint.to_owned(), font, theme::of(ui).weak);
+    let room = ui.available_rect_before_wrap().shrink2(egui::vec2(12.0, 0.0));
+    if galley.size().x <= room.width() {
+        let at = egui::Align2::CENTER_CENTER.align_size_within_rect(galley.size(), room).min;
+        ui.painter().galley(at, galley, theme::of(ui).weak);
+    }
 }
 
 /// A text that is cut off if there is no room, with the full text on hover.

@@ -115,7 +115,7 @@ fn run_window(
     let viewport = egui::ViewportBuilder::default()
         .with_title(title(shared.borrow_mut().as_mut().map_or(path, |app| app.session().path())))
         .with_app_id("sdfc-view")
-        .with_inner_size(stored.window.unwrap_or([1200.0, 760.0]))
+        .with_inner_size(stored.window.unwrap_or([1440.0, 860.0]))
         .with_min_inner_size([480.0, 320.0]);
     let wgpu_options = wgpu_options(events);
     let options = eframe::NativeOptions { viewport, renderer, wgpu_options, ..Default::default() };

@@ -1,5 +1,4 @@
 //! Answers about the text while someone types: roles of words, descriptions, completions.
 
 pub mod completions;
-pub mod entry_pictures;
 pub mod worker;

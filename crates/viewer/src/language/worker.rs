@@ -90,7 +90,7 @@ impl LanguageWorker {
 fn answer(request: LanguageRequest, last: Option<LanguageAnswer>) -> LanguageAnswer {
     let (name, text) = (&request.file, &request.text);
     let folder = EditedFolder::new(&request.path, request.drafts.clone());
-    let folder = BelowFolder { folder, below: name.rsplit_once('/').map_or("", |(it, _)| it) };
+    let folder = ImportedFile { folder, path: name };
     let completions = match request.cursor {
         Some(cursor) => complete(name, text, cursor, &folder, &[]),
         None => Vec::new(),
@@ -108,25 +108,23 @@ fn answer(request: LanguageRequest, last: Option<LanguageAnswer>) -> LanguageAns
     LanguageAnswer { request, analysis, tokens, completions }
 }
 
-/// A folder below that of the scene, for the imports of a file in it.
-struct BelowFolder<'a> {
+/// The folder of the scene, for the imports of a file in it or below it.
+struct ImportedFile<'a> {
     folder: EditedFolder,
-    below: &'a str,
+    path: &'a str,
 }
 
-impl BelowFolder<'_> {
-    fn path(&self, path: &str) -> String {
-        if self.below.is_empty() { path.to_owned() } else { format!("{}/{path}", self.below) }
-    }
-}
-
-impl Resolver for BelowFolder<'_> {
+impl Resolver for ImportedFile<'_> {
     fn read(&self, path: &str) -> Result<String, String> {
-        self.folder.read(&self.path(path))
+        self.folder.read(path)
     }
 
     fn read_bytes(&self, path: &str) -> Result<Vec<u8>, String> {
-        self.folder.read_bytes(&self.path(path))
+        self.folder.read_bytes(path)
+    }
+
+    fn scene_path(&self) -> &str {
+        self.path
     }
 }
 
@@ -154,5 +152,20 @@ mod tests {
         let second = ask(&format!("// ball\n{ball}"), Some(first.clone()));
         assert_eq!(start(&second), start(&first).map(|start| start + 8));
         assert!(start(&first).is_some());
+    }
+
+    #[test]
+    fn an_imported_file_knows_what_it_imports_from_above() {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::create_dir(folder.path().join("parts")).unwrap();
+        std::fs::write(folder.path().join("common.sdf"), "let size = 0.5\n").unwrap();
+        let text = "import size from \"../common.sdf\"\nsolid wheel() = length(p) - size\n";
+        let scene = folder.path().join("scene.sdf");
+        let request = LanguageRequest {
+            file: "parts/wheel.sdf".to_owned(),
+            ..LanguageRequest::new(&scene, text)
+        };
+        let found = definition(&answer(request, None).analysis, text.len() - 2).unwrap();
+        assert_eq!((found.file.as_str(), found.start), ("common.sdf", 4));
     }
 }

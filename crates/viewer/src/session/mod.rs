@@ -21,6 +21,7 @@ use std::sync::mpsc::{Receiver, channel};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use sdfc::{CompileValues, FrameValues, Scene};
+use sdfc_ide::ExampleScene;
 
 use crate::accuracy::checks::AccuracyChecks;
 use crate::accuracy::comparison::ComparisonJob;
@@ -30,7 +31,6 @@ use crate::compile::request::{BuildRequest, CompileReport};
 use crate::compile::worker::CompileWorker;
 use crate::export::exporter::ExportOutcome;
 use crate::export::worker::ExportWorker;
-use crate::language::entry_pictures::EntryPictures;
 use crate::language::worker::{LanguageAnswer, LanguageRequest, LanguageWorker};
 use crate::render::handles::HandleWorker;
 use crate::render::picture::{Picture, RenderEvent, RenderRequest};
@@ -47,6 +47,7 @@ use crate::session::lit_state::LitShapes;
 use crate::session::orbit_camera::{CameraState, OrbitCamera};
 use crate::session::save_state::Saving;
 use crate::session::tabs::Tabs;
+use crate::small_pictures::SmallPictures;
 use crate::views::mode::ViewMode;
 use crate::views::slice_plane::SlicePlane;
 
@@ -72,7 +73,7 @@ pub struct Session {
     /// The last answer of the language service, which may be about an earlier text.
     pub language: Option<LanguageAnswer>,
     /// Pictures of library entries.
-    pub entry_pictures: EntryPictures,
+    pub entry_pictures: SmallPictures<ExampleScene>,
     /// True if a text is formatted when it is saved.
     pub format_on_save: bool,
     watcher: FileWatcher,
@@ -92,8 +93,8 @@ pub struct Session {
     pub mode: ViewMode,
     /// The plane of [`ViewMode::Slice`].
     pub slice: SlicePlane,
-    /// True if axes and bounds are drawn over the picture.
-    pub show_axes: bool,
+    /// True if the scene's bounds are drawn over the picture.
+    pub show_bounds: bool,
     /// Samples per pixel; `None` takes the scene's.
     pub samples: Option<u32>,
     /// The ray method's parameter, such as its tolerance, as a multiple of the scene's.
@@ -166,7 +167,7 @@ impl Session {
         let wake_window = Arc::clone(&wake);
         let handles = ValueHandles::new(HandleWorker::new(sender, move || wake_window())?, answers);
         let wake_window = Arc::clone(&wake);
-        let entry_pictures = EntryPictures::new(move || wake_window())?;
+        let entry_pictures = SmallPictures::new(move || wake_window())?;
         let accuracy = AccuracyChecks::new(move || wake())?;
         let repeated_build = Arc::new(Mutex::new(build.clone()));
         let (requests, repeated) = (compile_worker.requests(), Arc::clone(&repeated_build));
@@ -194,7 +195,7 @@ impl Session {
             clock: Clock::default(),
             mode: ViewMode::default(),
             slice: SlicePlane::default(),
-            show_axes: false,
+            show_bounds: false,
             samples: None,
             tolerance: 1.0,
             refine: true,

@@ -221,11 +221,12 @@ fn every_widget_has_a_hover_text() {
         fixture.click(what);
         without_hover_text.extend(fixture.without_hover_text());
     }
-    for menu in ["scene.sdf", "Examples"] {
+    for menu in ["scene.sdf", "Examples…"] {
         fixture.click(menu);
         without_hover_text.extend(fixture.without_hover_text());
     }
     fixture.harness.key_press(Key::Escape);
+    fixture.harness.run_steps(3);
     for (list, entry) in [
         ("The view: what the picture shows (V for the next).", "Overshoot"),
         ("The ray method: how the surface is found along each ray.", "segment"),
@@ -247,9 +248,9 @@ fn escape_closes_menus_and_dialogs_and_nothing_else() {
         fixture.harness.run_steps(3);
     };
     fixture.click("scene.sdf");
-    assert!(fixture.has("Examples"));
+    assert!(fixture.has("Examples…"));
     escape(&mut fixture);
-    assert!(!fixture.has("Examples") && refines(&mut fixture));
+    assert!(!fixture.has("Examples…") && refines(&mut fixture));
     fixture.change_a_number();
     fixture.request_close();
     escape(&mut fixture);
@@ -310,6 +311,58 @@ fn typing_edits_the_scene_and_ctrl_s_saves_it() {
     // The file is followed again.
     fixture.write(SCENE);
     fixture.until(shows(SCENE));
+}
+
+#[test]
+fn errors_cover_the_picture_only_when_typing_pauses() {
+    let mut fixture = Fixture::new();
+    fixture.type_at_end("spere(1)");
+    let is_compiled =
+        |harness: &Harness<'_, App>| harness.state().opened().diagnostics.errors() > 0;
+    // A frame of the harness is a quarter of a second.
+    fixture.harness.get_by_role(Role::MultilineTextInput).type_text("\n");
+    while !is_compiled(&fixture.harness) {
+        fixture.harness.get_by_role(Role::MultilineTextInput).type_text(" ");
+        fixture.harness.step();
+        assert!(!fixture.has("error[E0201]"));
+    }
+    fixture.harness.run_steps(1);
+    assert!(!fixture.has("error[E0201]"));
+    fixture.harness.run_steps(5);
+    assert!(fixture.has("error[E0201]"));
+    // They stay while the text is edited.
+    fixture.harness.get_by_role(Role::MultilineTextInput).type_text(" ");
+    fixture.harness.run_steps(1);
+    assert!(fixture.has("error[E0201]"));
+}
+
+#[test]
+fn a_click_on_an_axis_looks_along_it() {
+    let mut fixture = Fixture::of("sphere(1)\n");
+    let rect = fixture.harness.state().picture_rect();
+    // The scene's camera looks from the front, right and above: the end of y is the upper one.
+    let reach = 35.0;
+    let middle = rect.right_top() + eframe::egui::vec2(-reach - 8.0, reach + 8.0);
+    let pose = |fixture: &Fixture| fixture.harness.state().opened().camera().unwrap().pose();
+    let up = pose(&fixture).basis()[1].y as f32;
+    let at = middle - eframe::egui::vec2(0.0, 27.0 * up);
+    fixture.harness.hover_at(at);
+    fixture.harness.run_steps(2);
+    fixture.harness.drag_at(at);
+    fixture.harness.drop_at(at);
+    fixture.harness.run_steps(3);
+    assert!(pose(&fixture).basis()[2].y < -0.99, "{:?}", pose(&fixture));
+}
+
+#[test]
+fn examples_are_chosen_by_their_pictures() {
+    let mut fixture = Fixture::new();
+    fixture.click("scene.sdf");
+    fixture.click("Examples…");
+    fixture.until(|harness| harness.query_by_label("welcome").is_some());
+    fixture.harness.key_press(Key::Escape);
+    fixture.harness.run_steps(3);
+    assert!(fixture.harness.query_by_label("welcome").is_none());
 }
 
 #[test]

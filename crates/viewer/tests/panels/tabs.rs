@@ -114,6 +114,8 @@ fn errors_of_an_import_are_shown_in_its_tab_and_fixed_there() {
     fixture.harness.run_steps(2);
     let session = fixture.harness.state().opened();
     let fix = session.diagnostics_of_text().find_map(|it| it.fixes.first()).unwrap().clone();
+    // Errors of a text that is being edited cover the picture a moment later.
+    fixture.until(|harness| harness.query_by_label(&fix.title).is_some());
     fixture.click(&fix.title);
     fixture.until(|harness| harness.state().opened().diagnostics.errors() == 0);
     assert_eq!(**fixture.harness.state().opened().shown_text(), *TOOTH);

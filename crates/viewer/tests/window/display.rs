@@ -165,7 +165,7 @@ impl<'a> Window<'a> {
 
     /// Opens the viewer without a scene.
     pub fn open_example(display: &'a Display, scene: &Scene) -> Result<Self, Failed> {
-        Self::shown(display, &mut viewer(display, scene, &[]), "params.sdf")
+        Self::shown(display, &mut viewer(display, scene, &[]), "welcome.sdf")
     }
 
     fn shown(

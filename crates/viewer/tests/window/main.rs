@@ -149,12 +149,12 @@ fn example(display: Display) -> Result<(), Failed> {
     let shown = window.settled(has_a_picture)?;
     window.keep(&shown, "example")?;
     let folder = scene.own().join("sdfc/examples");
-    expect(folder.join("params.sdf").is_file(), "the example was not copied")?;
+    expect(folder.join("welcome.sdf").is_file(), "the example was not copied")?;
     window.input(&["key", "ctrl+e"])?;
     let dialog = window.seen(|picture| differ(picture, &shown, PICTURE) > 5000)?;
     window.keep(&dialog, "save")?;
     window.input(&["key", "Return"])?;
-    let file = folder.join("params.png");
+    let file = folder.join("welcome.png");
     window.until("no picture was exported", || Ok(file.is_file()))?;
     expect(image::image_dimensions(&file)? == (1920, 1080), "it has another size")
 }

@@ -9,20 +9,21 @@ use sdfc_lsp::{
     Answer, Ask, Draw, ParamInfo, ParamValue, Preview, PreviewCamera, PreviewLens, PreviewOptions,
     Question, Questions,
 };
-use sdfc_render::linear_to_srgb8;
+use sdfc_render::{Gpu, linear_to_srgb8};
 
 /// Draws with the façade.
 pub struct Drawer;
 
 impl Draw for Drawer {
     fn answer_all(&self, questions: &Questions<'_>) {
+        let mut device = None;
         let mut next = questions.next();
         while let Some(question) = next {
             let compiled = question.with_resolver(|resolver| {
                 Compiler::new().resolver(resolver).compile(&question.name, &question.text)
             });
             next = match compiled {
-                Ok(scene) => answer_about(&scene, question, questions),
+                Ok(scene) => answer_about(&scene, &mut device, question, questions),
                 Err(errors) => {
                     let first = errors.located().into_iter().find(|it| it.code.starts_with('E'));
                     let first = first.map(|it| format!(": {}", it.message)).unwrap_or_default();
@@ -37,6 +38,7 @@ impl Draw for Drawer {
 /// Answers questions as long as they are about one scene, and returns the first about another.
 fn answer_about<'q>(
     scene: &Scene,
+    device: &mut Option<Gpu>,
     first: Question<'q>,
     questions: &Questions<'q>,
 ) -> Option<Question<'q>> {
@@ -47,7 +49,8 @@ fn answer_about<'q>(
         let answer = match &question.ask {
             Ask::Params => Ok(Answer::Params(scene.params().iter().map(param).collect())),
             Ask::Preview(options) => {
-                preview(scene, &mut painter, options, &question).map(Answer::Preview)
+                let drawn = preview(scene, (device, &mut painter), options, &question);
+                drawn.map(Answer::Preview)
             }
         };
         question.answer(answer);
@@ -58,7 +61,7 @@ fn answer_about<'q>(
 
 fn preview<'s>(
     scene: &'s Scene,
-    painter: &mut Option<Painter<'s>>,
+    drawer: (&mut Option<Gpu>, &mut Option<Painter<'s>>),
     options: &PreviewOptions,
     question: &Question<'_>,
 ) -> Result<Preview, String> {
@@ -68,7 +71,7 @@ fn preview<'s>(
         Some(camera) => pose(camera)?,
         None => own_pose(scene, &values, f64::from(width) / f64::from(height))?,
     };
-    let picture = paint(scene, painter, options.size, pose, &values, question);
+    let picture = paint(scene, drawer, options.size, pose, &values, question);
     let picture = picture.map_err(|e| e.to_string())?;
     let device = picture.stats.adapter.clone().unwrap_or_else(|| "CPU".to_owned());
     Ok(Preview {
@@ -88,10 +91,11 @@ fn own_pose(scene: &Scene, values: &FrameValues, aspect: f64) -> Result<Pose, St
     pose.map_err(|e| e.to_string())
 }
 
-/// Draws with the painter that there is, or makes one: that compiles the shader.
+/// Draws with the painter that there is, or makes one, which compiles the shader. The device stays
+/// open from one scene to the next.
 fn paint<'s>(
     scene: &'s Scene,
-    painter: &mut Option<Painter<'s>>,
+    (device, painter): (&mut Option<Gpu>, &mut Option<Painter<'s>>),
     size: [u32; 2],
     pose: Pose,
     values: &FrameValues,
@@ -103,12 +107,23 @@ fn paint<'s>(
     if !painter.as_mut().is_some_and(|known| known.aim(size, pose)) {
         // One ray for each pixel: a preview is drawn often.
         let options = PictureOptions::new().size(size).pose(pose).samples(1);
-        *painter = Some(scene.painter(&options)?);
+        if device.is_none() {
+            *device = Gpu::new().ok();
+        }
+        *painter = Some(match device {
+            Some(gpu) => scene.painter_on(gpu, &options)?,
+            None => scene.painter(&options)?,
+        });
     }
-    let Some(painter) = painter else { return Err(Error::NothingDrawn) };
-    painter.paint(values, 1, &mut |_| {
+    let Some(drawer) = painter else { return Err(Error::NothingDrawn) };
+    let picture = drawer.paint(values, 1, &mut |_| {
         if question.is_cancelled() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-    })
+    });
+    if picture.as_ref().is_err_and(Error::is_machine) {
+        // The device may be lost.
+        (*device, *painter) = (None, None);
+    }
+    picture
 }
 
 fn values(scene: &Scene, options: &PreviewOptions) -> Result<FrameValues, String> {

@@ -1,22 +1,35 @@
 //! The description of what is under the pointer in the editor.
 
-use std::collections::BTreeMap;
+use std::ops::Range;
+use std::sync::Arc;
 
-use eframe::egui::{self, ColorImage, Response, TextureHandle, TextureOptions, Ui};
-use sdfc_ide::{definition, hover};
+use eframe::egui::{self, Response, Ui};
+use sdfc_ide::{ExampleScene, Hover, ShapeFacts, hover};
 
+use crate::app::picture_textures::PictureTextures;
 use crate::compile::diagnostics::ShownDiagnostic;
-use crate::language::entry_pictures::{EntryId, SIZE};
 use crate::session::Session;
+use crate::session::tabs::TabFile;
 
 /// The widest description in points.
 const MAX_WIDTH: f32 = 420.0;
 
-/// The pictures of library entries that were shown.
-#[derive(Default)]
-pub struct HoverPictures(BTreeMap<EntryId, TextureHandle>);
+/// The last description, and the pictures of library entries that were shown.
+#[derive(Debug, Default)]
+pub struct HoverText {
+    textures: PictureTextures<ExampleScene>,
+    last: Option<Described>,
+}
 
-impl HoverPictures {
+/// What is at an offset of a text.
+#[derive(Debug)]
+struct Described {
+    text: Arc<str>,
+    offset: usize,
+    hover: Option<Hover>,
+}
+
+impl HoverText {
     /// Shows the errors at an offset of the shown text, else the description of the name there,
     /// with a picture of a library entry.
     pub fn describe(
@@ -33,40 +46,44 @@ impl HoverPictures {
             response.clone().on_hover_text_at_pointer(lines.join("\n"));
             return;
         }
-        let Some(analysis) = session.answer_about_text().map(|answer| &answer.analysis) else {
-            return;
-        };
-        let Some(shown) = hover(analysis, at, &mut |_| None) else { return };
-        let entry = definition(analysis, at).and_then(|location| EntryId::at(&location));
+        let Some(shown) = self.hover(session, at) else { return };
         let lines = shown.markdown.lines().filter(|line| !line.starts_with("```"));
         let text = lines.collect::<Vec<_>>().join("\n");
         response.clone().on_hover_ui_at_pointer(|ui| {
             ui.set_max_width(MAX_WIDTH);
-            if let Some(entry) = entry {
-                self.picture(ui, session, entry);
+            if let Some(example) = &shown.example {
+                self.picture(ui, session, example);
             }
             ui.label(text.trim());
         });
     }
 
-    /// Shows the picture of an entry; nothing until it is drawn.
-    fn picture(&mut self, ui: &mut Ui, session: &mut Session, entry: EntryId) {
-        let texture = match self.0.get(&entry) {
-            Some(texture) => texture,
-            None => {
-                let Some(rgb) = session.entry_pictures.get(entry) else { return };
-                let image = ColorImage::from_rgb(SIZE.map(|side| side as usize), rgb);
-                let texture = ui.ctx().load_texture("entry", image, TextureOptions::LINEAR);
-                self.0.entry(entry).or_insert(texture)
-            }
-        };
+    /// The description of the name at an offset of the shown text.
+    fn hover(&mut self, session: &Session, offset: usize) -> Option<Hover> {
+        let analysis = &session.answer_about_text()?.analysis;
+        let text = session.shown_text();
+        let is_last = |it: &&Described| Arc::ptr_eq(&it.text, text) && it.offset == offset;
+        if let Some(last) = self.last.as_ref().filter(is_last) {
+            return last.hover.clone();
+        }
+        let found = hover(analysis, offset, &mut |call| facts(session, call));
+        self.last = Some(Described { text: Arc::clone(text), offset, hover: found.clone() });
+        found
+    }
+
+    /// Shows the picture of an example; nothing until it is drawn.
+    fn picture(&mut self, ui: &mut Ui, session: &mut Session, example: &ExampleScene) {
+        let pictures = &mut session.entry_pictures;
+        let Some(texture) = self.textures.get(ui.ctx(), pictures, example) else { return };
         let image = egui::Image::new(texture).corner_radius(4).alt_text("a picture of the entry");
         ui.add(image);
     }
 }
 
-impl std::fmt::Debug for HoverPictures {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_tuple("HoverPictures").field(&self.0.len()).finish()
-    }
+/// The facts about the shapes that a call of the shown text made, if that text was compiled.
+fn facts(session: &Session, call: Range<usize>) -> Option<ShapeFacts> {
+    let model = session.model.as_ref().filter(|model| model.source == **session.shown_text());
+    let model = model.filter(|_| *session.shown_file() == TabFile::Scene)?;
+    let facts = model.scene.shape_facts(call)?;
+    Some(ShapeFacts { cost: facts.cost(), quality: facts.quality })
 }

@@ -13,7 +13,7 @@ use crate::app::code::color_button::ColorButton;
 use crate::app::code::completion_list::CompletionList;
 use crate::app::code::find_bar::FindBar;
 use crate::app::code::highlighting::{LayoutCache, LayoutKey, Mark};
-use crate::app::code::hover_text::HoverPictures;
+use crate::app::code::hover_text::HoverText;
 use crate::app::code::jumps::{self, Jumps};
 use crate::app::code::number_drag::NumberDrag;
 use crate::app::code::text_state::{
@@ -38,7 +38,7 @@ pub struct CodeEditor {
     jumps: Jumps,
     color: ColorButton,
     drag: NumberDrag,
-    pictures: HoverPictures,
+    hover: HoverText,
     layout: LayoutCache,
     /// The cursor of the last frame as a byte offset, while the editor has the keyboard.
     cursor: Option<usize>,
@@ -215,7 +215,7 @@ impl CodeEditor {
 
     /// Forgets what was lost with a window.
     pub fn move_to_window(&mut self) {
-        self.pictures = HoverPictures::default();
+        self.hover = HoverText::default();
     }
 
     /// Formats the shown text.
@@ -264,7 +264,7 @@ impl CodeEditor {
                 self.jumps.go_to_definition(session, at, at);
             }
         } else {
-            self.pictures.describe(response, session, found, at);
+            self.hover.describe(response, session, found, at);
         }
     }
 

@@ -1,14 +1,12 @@
-//! Lines over the picture: the directions of the axes, and the scene's bounds.
+//! Lines over the picture: the scene's bounds.
 
-use eframe::egui::{self, Color32, Pos2, Rect, Stroke, Ui, vec2};
+use eframe::egui::{Color32, Pos2, Rect, Stroke, Ui, vec2};
 use glam::DVec3;
 use sdfc_render::Pose;
 
 use super::theme;
 use crate::render::picture::Picture;
 
-/// The length of the axes, in points.
-const AXIS_LENGTH: f32 = 26.0;
 /// The near plane at which lines are clipped, as a fraction of the distance to the target.
 const NEAR_PLANE: f64 = 1e-3;
 /// Direction, name and colour of each axis.
@@ -18,13 +16,12 @@ pub(super) const AXES: [(DVec3, &str, Color32); 3] = [
     (DVec3::Z, "z", Color32::from_rgb(90, 140, 240)),
 ];
 
-/// Draws axes and bounds over a picture that fills the rectangle, with the picture's camera.
+/// Draws the bounds over a picture that fills the rectangle, with the picture's camera.
 pub fn show(ui: &Ui, rect: Rect, picture: &Picture) {
     let request = &picture.request;
     if let Some(bounds) = request.model.scene.bounds_at(&request.frame) {
         bounding_box(ui, rect, &request.pose, bounds);
     }
-    axes(ui, rect, &request.pose);
 }
 
 /// The twelve edges of a box, without those of infinite length.
@@ -38,29 +35,6 @@ fn bounding_box(ui: &Ui, rect: Rect, pose: &Pose, bounds: [[f64; 3]; 2]) {
         {
             ui.painter().with_clip_rect(rect).line_segment(line, stroke);
         }
-    }
-}
-
-/// The axes, in the upper right corner.
-fn axes(ui: &Ui, rect: Rect, pose: &Pose) {
-    let [right, up, forward] = pose.basis();
-    let middle = rect.right_top() + vec2(-AXIS_LENGTH - 18.0, AXIS_LENGTH + 18.0);
-    let mut lines = AXES.map(|(axis, name, color)| {
-        let to = vec2(axis.dot(right) as f32, -axis.dot(up) as f32);
-        (
-            axis.dot(forward),
-            middle + to * AXIS_LENGTH,
-            middle + to * (AXIS_LENGTH + 9.0),
-            name,
-            color,
-        )
-    });
-    // The nearest axis is drawn last.
-    lines.sort_by(|a, b| b.0.total_cmp(&a.0));
-    for (_, end, label, name, color) in lines {
-        ui.painter().line_segment([middle, end], Stroke::new(2.0, color));
-        let font = egui::FontId::proportional(11.0);
-        ui.painter().text(label, egui::Align2::CENTER_CENTER, name, font, color);
     }
 }
 
