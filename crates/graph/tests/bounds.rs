@@ -324,6 +324,24 @@ fn a_smooth_difference_stays_near_its_first_operand() {
 }
 
 #[test]
+fn an_operator_around_one_that_is_searched_keeps_bounds() {
+    let mut scene = Scene::default();
+    let brick = scene.cuboid([0.5, 1.0, 0.25]);
+    // p - clamp(p, -h, h) puts a gap of 2 h into the brick's middle.
+    let (p, half) = (scene.p(), scene.graph.constant(Type::Vec3, &[0.2, 0.0, 0.0]));
+    let minus = scene.graph.neg(half);
+    let above = scene.graph.max(p, minus);
+    let middle = scene.graph.min(above, half);
+    let q = scene.graph.sub(p, middle);
+    let long = scene.at(brick, q);
+    scene.assert_bounds(long, [[-0.7, -1.0, -0.25], [0.7, 1.0, 0.25]], 0.01);
+
+    let quarter = scene.graph.number(std::f64::consts::FRAC_PI_2);
+    let turned = scene.turned(long, quarter);
+    scene.assert_bounds(turned, [[-1.0, -0.7, -0.25], [1.0, 0.7, 0.25]], 0.01);
+}
+
+#[test]
 fn bounds_depend_on_params_where_rules_apply() {
     let mut scene = Scene::default();
     let radius = scene.param(1.0, None);

@@ -34,7 +34,8 @@ impl Deriver<'_> {
                 return zone.grown(self.graph, limit);
             }
         }
-        self.zone(Query { node: formula, limit, level, dim, above: false })
+        let zone = self.zone(Query { node: formula, limit, level, dim, above: false });
+        self.closed(id, zone, limit)
     }
 
     /// True if a shape's field equals the distance for all values of the params. Shapes state that

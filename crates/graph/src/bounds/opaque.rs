@@ -194,15 +194,16 @@ impl Deriver<'_> {
         points
     }
 
-    /// A shape's bounds, found by search within a box that contains the shape.
-    pub(super) fn searched_within(&mut self, id: ShapeId, start: Region) -> Region {
+    /// Where a shape's field is not above the limit, found by search within a box that contains
+    /// these points.
+    pub(super) fn searched_within(&mut self, id: ShapeId, start: Region, limit: NodeId) -> Region {
         let (level, dim) = (self.graph.shape(id).level, self.graph.shape(id).dim);
         let points = self.points(level, dim);
         let (own, outer) = (points[usize::from(level)], &points[..usize::from(level)]);
         let Ok(field) = self.memo.expander.field_under(self.graph, id, outer, own) else {
             return start;
         };
-        let limit = Interval::new(0.0, 0.0);
+        let limit = self.range(limit);
         match Search::new(self.graph, field, limit, false, dim, self.ranges) {
             Some(search) => search.run(start),
             None => start,

@@ -3,6 +3,7 @@
 use rustc_hash::FxHashSet;
 
 use super::deriver::{Deriver, RED_ZONE, STACK_STEP};
+use super::search::Region;
 use super::zone::Zone;
 use crate::node::{NodeId, ShapeId};
 use crate::shape::Shape;
@@ -39,18 +40,48 @@ impl Deriver<'_> {
     fn tightened(&mut self, shape: ShapeId) -> Zone {
         let zero = self.graph.number(0.0);
         let zone = self.shape_zone(shape, zero);
-        if zone.tight {
+        if zone.tight || (self.is_closed(shape, zone) && self.is_large(shape)) {
             return zone;
         }
-        let start = zone.axes.map(|[lo, hi]| [self.range(lo).lo(), self.range(hi).hi()]);
-        let width = self.graph.shape(shape).dim.point_type().width();
-        let is_closed = start[..width].iter().flatten().all(|end| end.is_finite());
-        if is_closed && self.is_large(shape) {
+        self.search_in(shape, zone, zero)
+    }
+
+    /// The box of an operator whose rule left it open, although all its operands have closed boxes:
+    /// closed by a search, if one succeeds. The operators around it have rules that keep a closed
+    /// box, such as that of a rotation, while a search of their formulas would fail. An operator
+    /// with an open operand is open for that reason, and is not searched.
+    pub(super) fn closed(&mut self, shape: ShapeId, zone: Zone, limit: NodeId) -> Zone {
+        let children = self.graph.shape(shape).children.clone();
+        if zone.tight || children.is_empty() || self.is_closed(shape, zone) || self.is_large(shape)
+        {
             return zone;
         }
-        let region = self.searched_within(shape, start);
+        let zero = self.graph.number(0.0);
+        for child in children {
+            let operand = self.shape_zone(child, zero);
+            if !self.is_closed(child, operand) {
+                return zone;
+            }
+        }
+        self.search_in(shape, zone, limit).loose()
+    }
+
+    fn search_in(&mut self, shape: ShapeId, zone: Zone, limit: NodeId) -> Zone {
+        let start = self.region(zone);
+        let region = self.searched_within(shape, start, limit);
         let found = Zone::of_numbers(self.graph, region);
         zone.overlap(self.graph, found)
+    }
+
+    /// True if the box has an end on each axis of the shape.
+    fn is_closed(&self, shape: ShapeId, zone: Zone) -> bool {
+        let width = self.graph.shape(shape).dim.point_type().width();
+        self.region(zone)[..width].iter().flatten().all(|end| end.is_finite())
+    }
+
+    /// The box for all values of the params.
+    fn region(&self, zone: Zone) -> Region {
+        zone.axes.map(|[lo, hi]| [self.range(lo).lo(), self.range(hi).hi()])
     }
 
     /// The box of a shape that is another shape, moved or scaled along the axes: derived from the
