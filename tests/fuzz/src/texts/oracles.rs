@@ -89,7 +89,7 @@ fn layout(text: &str) -> Outcome {
 
 pub(crate) fn service(text: &str) -> Outcome {
     let scene = Analysis::new(NAME, text, &NoFiles);
-    let shown: Errors = sdfc_ide::diagnostics(&scene)
+    let shown: Errors = sdfc_ide::diagnostics(&scene, false)
         .into_iter()
         .filter(|it| it.severity == Severity::Error)
         .map(|it| (it.code, it.range.start, it.range.end))
