@@ -10,7 +10,7 @@
 
 use sdfc_graph::{
     Binary, Dim, ExpandError, Expander, Graph, MaterialField, NodeId, Program, Scene, ShapeId,
-    SurfaceVector, Ternary, Type, Unary, best_gradient, fold_transforms, substitute,
+    SurfaceVector, Ternary, Type, Unary, best_gradient, substitute,
 };
 
 use crate::certify::conservative::{Uncertified, conservative_field};
@@ -19,7 +19,7 @@ use crate::certify::quality::Qualities;
 use crate::cost::cost;
 use crate::leaves::count_leaves;
 use crate::report::{Report, shape_reports};
-use crate::reroll::materials::reroll_materials;
+use crate::reroll::materials::{fold_with_chains, reroll_materials};
 use crate::reroll::rewrite::{RerolledLoop, reroll};
 use crate::reroll::strategy::LoopStrategy;
 use crate::unit_slope::unit_slopes;
@@ -143,13 +143,14 @@ fn formulas(
     }
     let (uses_loops, unrolled_limit) =
         strategy.uses_loops(graph, nodes[0], &program.settings, None);
-    let folded = fold_transforms(graph, &nodes);
+    let chains = if uses_loops { expander.material_chains(graph)? } else { Vec::new() };
+    let (folded, chains) = fold_with_chains(graph, &nodes, chains);
     program.names = folded.names(graph, &expander.names());
     let (fields, materials) = folded.roots.split_at(1 + shapes.len());
     let (mut fields, mut materials, mut loops) = (fields.to_vec(), materials.to_vec(), Vec::new());
     if uses_loops {
         let rerolled = reroll(graph, &fields);
-        materials = reroll_materials(graph, &materials, &rerolled.replaced);
+        materials = reroll_materials(graph, &materials, &rerolled.replaced, &chains);
         (fields, loops) = (rerolled.roots, rerolled.loops);
     }
     let (conservative, distances) = (fields[0], fields[1..].to_vec());

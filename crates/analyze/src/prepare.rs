@@ -2,7 +2,7 @@
 
 use sdfc_graph::{
     Bounds, Dim, ExpandError, Expander, Graph, NodeId, Program, Rays, Scene, ShapeId,
-    SurfaceVector, Unary, best_gradient, fold_transforms, reachable, substitute, uniforms,
+    SurfaceVector, Unary, best_gradient, reachable, substitute, uniforms,
 };
 
 use crate::analytic::operands::Operands;
@@ -17,7 +17,7 @@ use crate::planar::planar_picture;
 use crate::report::{Report, shape_reports};
 use crate::reroll::cullable::cullable_loops;
 use crate::reroll::marched_bounds::looped_bounds;
-use crate::reroll::materials::reroll_materials;
+use crate::reroll::materials::{fold_with_chains, reroll_materials};
 use crate::reroll::rewrite::{reroll, similar_groups};
 use crate::reroll::strategy::{LoopStrategy, has_secondary_rays};
 use crate::shapes::minimum;
@@ -109,13 +109,14 @@ fn flatten(
     if has_material {
         flat.extend(expander.material(graph, root, point)?);
     }
-    let folded = fold_transforms(graph, &flat);
+    let chains = if uses_loops { expander.material_chains(graph)? } else { Vec::new() };
+    let (folded, chains) = fold_with_chains(graph, &flat, chains);
     program.names = folded.names(graph, &expander.names());
     let (fields, material) = folded.roots.split_at(count);
     let (mut fields, mut material, mut loops) = (fields.to_vec(), material.to_vec(), Vec::new());
     if uses_loops {
         let rerolled = reroll(graph, &fields);
-        material = reroll_materials(graph, &material, &rerolled.replaced);
+        material = reroll_materials(graph, &material, &rerolled.replaced, &chains);
         (fields, loops) = (rerolled.roots, rerolled.loops);
     }
     let Some(&distance) = fields.first() else { return Ok(Report::default()) };

@@ -168,8 +168,8 @@ impl Shader {
 ///
 /// Its entry points for tiles are `mark`, one invocation for each 32 iterations (x), tile of the
 /// level (y) and loop (z), to be run for each level from the highest down; and `list`, one for each
-/// tile (x). Both have workgroups of 64 by 1. Those for cells are `least_of_groups` and
-/// `mark_groups`, one for each group of cells (x), 32 iterations (y) and loop (z); and
+/// tile (x). Both have workgroups of 64 by 1. Those for cells are `mark_groups`, one for each group
+/// of cells (x), 32 iterations (y) and loop (z), to be run at level 0 and then at level 1; and
 /// `list_cells`, one for each cell (x).
 ///
 /// Its bindings are those of the picture; in place of the pixels it has storage arrays of words, at
@@ -184,4 +184,7 @@ pub struct Culling {
     /// For each loop, true if no iteration need be run outside all cells; `None` if rays do not use
     /// cells.
     pub cells: Option<Vec<bool>>,
+    /// True if rays need exact distances outside the surfaces' box, too: those to a light with a
+    /// soft shadow do.
+    pub soft_shadows: bool,
 }

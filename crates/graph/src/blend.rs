@@ -31,6 +31,12 @@ impl Blend {
         if !is_chain(a) && is_chain(b) { [b, a] } else { [a, b] }
     }
 
+    /// True if what the blend lies below the lesser operand depends on the difference of the
+    /// operands only. Then the derivatives with respect to both operands sum up to 1.
+    pub fn is_symmetric(self) -> bool {
+        self.is_symmetric
+    }
+
     /// The maximum by which the blend lies below the lesser operand, known per frame. `id` is the
     /// node of the blend. `None` if it is not known.
     pub fn depth(self, graph: &mut Graph, id: NodeId) -> Option<NodeId> {

@@ -5,13 +5,17 @@
 //! expanded at the sample's point. A shape of level L sees the points of the formulas around it: if
 //! it is sampled at q where those points are E, its own points are E\[0..L\] and q.
 
+mod chains;
 mod environment;
 mod material;
 mod names;
 
 use rustc_hash::FxHashMap;
 
+use self::chains::Expanded;
+pub use self::chains::{MaterialChain, MaterialStep};
 use self::environment::{Env, Environments};
+use self::material::Material;
 use self::names::Names;
 use crate::graph::Graph;
 use crate::node::{MaterialField, Node, NodeId, ShapeId, Stage, SurfaceVector};
@@ -95,7 +99,9 @@ impl std::error::Error for ExpandError {}
 pub struct Expander {
     environments: Environments,
     done: FxHashMap<(NodeId, Env), NodeId>,
-    materials: FxHashMap<ShapeId, [NodeId; 6]>,
+    materials: FxHashMap<ShapeId, Material>,
+    /// Where materials with chains were expanded.
+    blended: Expanded,
     names: Names,
     /// The arguments of the current node, with their expansions.
     arguments: Vec<(NodeId, NodeId)>,
@@ -108,6 +114,7 @@ impl Default for Expander {
             environments: Environments::default(),
             done: FxHashMap::default(),
             materials: FxHashMap::default(),
+            blended: Expanded::default(),
             names: Names::default(),
             arguments: Vec::new(),
             limit: NODE_LIMIT,
@@ -182,6 +189,26 @@ impl Expander {
         Ok(fields)
     }
 
+    /// The chains of blends in the materials that were expanded so far.
+    ///
+    /// # Errors
+    /// If the node limit is exceeded.
+    pub fn material_chains(
+        &mut self,
+        graph: &mut Graph,
+    ) -> Result<Vec<MaterialChain>, ExpandError> {
+        let mut expanded = Vec::new();
+        for (shape, env) in self.blended.order.clone() {
+            let chains = self.materials.get(&shape).map(|material| material.chains.clone());
+            for chain in chains.unwrap_or_default() {
+                let nodes: Result<Vec<NodeId>, ExpandError> =
+                    chain.nodes().into_iter().map(|node| self.expand(graph, (node, env))).collect();
+                expanded.push(chain.with_nodes(&nodes?));
+            }
+        }
+        Ok(expanded)
+    }
+
     /// Expands a node of a formula. `points` are the points of levels 0, 1, ….
     ///
     /// # Errors
@@ -218,7 +245,7 @@ impl Expander {
     ) -> Result<NodeId, ExpandError> {
         let inner = self.environments.of(outer);
         let env = self.inside(graph, shape, inner, point)?;
-        let formula = self.formula_of(graph, sample);
+        let formula = self.formula_of(graph, sample, env);
         let result = self.expand(graph, (formula, env))?;
         if let Node::Sample(..) = graph.node(sample) {
             self.names.record(graph, result, shape);
@@ -243,20 +270,18 @@ impl Expander {
         Ok(self.environments.push(outer, point))
     }
 
-    /// The formula that replaces a sample, in the sampled shape's own point.
-    fn formula_of(&mut self, graph: &mut Graph, sample: NodeId) -> NodeId {
+    /// The formula that replaces a sample, in the sampled shape's own point. `env` are the points
+    /// that the formula sees.
+    fn formula_of(&mut self, graph: &mut Graph, sample: NodeId, env: Env) -> NodeId {
         match graph.node(sample) {
             Node::Sample(shape, _) => graph.shape(shape).formula,
             Node::MaterialAt(shape, _, field) => {
-                let fields = match self.materials.get(&shape) {
-                    Some(&fields) => fields,
-                    None => {
-                        let fields = material::formulas(graph, shape);
-                        self.materials.insert(shape, fields);
-                        fields
-                    }
-                };
-                fields[field.index()]
+                let material =
+                    self.materials.entry(shape).or_insert_with(|| material::formulas(graph, shape));
+                if !material.chains.is_empty() {
+                    self.blended.insert(shape, env);
+                }
+                material.fields[field.index()]
             }
             Node::Const(_)
             | Node::Point(..)
@@ -355,7 +380,7 @@ impl Expander {
     ) -> Result<Step, ExpandError> {
         let at = self.lookup(graph, (point, env)).unwrap_or(point);
         let inner = self.inside(graph, shape, env, at)?;
-        let formula = self.formula_of(graph, sample);
+        let formula = self.formula_of(graph, sample, inner);
         let Some(result) = self.lookup(graph, (formula, inner)) else {
             stack.push((formula, inner));
             return Ok(Step::Wait);

@@ -82,7 +82,7 @@ pub use coefficient::Coefficient;
 pub use derive::{GradientReport, adjoints, best_gradient, gradient, gradient_in_parts};
 pub use dump::{dump, operation_count};
 pub use enclose::{enclosure, slope_enclosure, tight_enclosure};
-pub use expand::{ExpandError, Expander, NODE_LIMIT};
+pub use expand::{ExpandError, Expander, MaterialChain, MaterialStep, NODE_LIMIT};
 pub use extract::Extract;
 pub use graph::{Arguments, Graph, LipschitzClaim};
 pub use ids::{IdMap, IdSet};

@@ -145,8 +145,7 @@ pub fn ray_source(method: &MethodDefinition) -> String {
 }
 
 /// Returns the source of the shader that runs before a picture with [`Features::culled`]. Its entry
-/// points are `mark` and `list` for tiles; `least_of_groups`, `mark_groups` and `list_cells` for
-/// cells.
+/// points are `mark` and `list` for tiles; `mark_groups` and `list_cells` for cells.
 pub fn culling_source() -> String {
     let files = [
         include_str!("wgsl/features.wgsl"),

@@ -35,6 +35,10 @@ fn main() {
             format!("union({})\n{OUTSIDE}{SOFT}reflections(1)\n", colored()),
         ),
         (
+            "blended, with materials of several kinds",
+            format!("union({}blend: smooth(0.1))\n{OUTSIDE}{SUNNY}", colored()),
+        ),
+        (
             "hard, from within",
             hard() + "camera(eye: [0.1, 0.2, 0.3], target: [1, 0.4, 2], fov: 80deg)\n",
         ),

@@ -51,6 +51,16 @@ fn chained(blend: &str) -> String {
     text + "  blend: " + blend + ")\n"
 }
 
+/// Returns balls, boxes and hollow balls by turns, as arguments of a call.
+fn alternating() -> String {
+    let shape = |i: usize| match i % 3 {
+        0 => format!("sphere({:.3})", 0.3 + 0.1 * number(i)),
+        1 => "box([0.3, 0.4, 0.2])".to_owned(),
+        _ => "difference(sphere(0.3), sphere(0.2))".to_owned(),
+    };
+    (0..PARTS).map(|i| format!("\n  {}{},", shape(i), place(i))).collect()
+}
+
 fn compiled(text: &str, loops: LoopStrategy) -> Scene {
     let scene = Compiler::new().loops(loops).compile("rolled.sdf", text).expect("no errors");
     assert_eq!(scene.diagnostics().to_string(), "");
@@ -102,6 +112,14 @@ fn each_run_in_a_blended_union_becomes_a_loop() {
         assert_eq!(operands, [PARTS / 2 - 1, PARTS / 2]);
         assert!(loops.iter().all(|found| found.blended));
     }
+}
+
+#[test]
+fn kinds_that_alternate_in_a_blended_union_share_a_loop() {
+    let rolled = compare(&format!("union({}\n  blend: smooth(0.2))\n", alternating()));
+    let loops = &rolled.report().loops;
+    assert_eq!(loops.iter().map(|found| found.operands).collect::<Vec<_>>(), [PARTS - 1]);
+    assert!(loops[0].blended);
 }
 
 #[test]
@@ -173,4 +191,20 @@ fn the_nearest_part_of_a_looped_union_shows_its_material() {
 fn a_looped_union_below_other_operations_shows_its_materials() {
     let carved = "difference(union(parts), sphere(0.3).color(#ff0000)) | plane(y: -1)";
     compare_materials(&(colored() + carved));
+}
+
+#[test]
+fn a_looped_chain_of_blends_mixes_the_materials_of_its_parts() {
+    for blend in ["smooth(0.2)", "smooth_cubic(0.3)"] {
+        compare_materials(&(colored() + "union(parts, blend: " + blend + ")"));
+    }
+    let around = "difference(union(parts, blend: smooth(0.2)), sphere(0.3).color(#ff0000))";
+    compare_materials(&(colored() + around + ".rotate(y: 20deg) | plane(y: -1)"));
+}
+
+#[test]
+fn a_looped_chain_goes_on_from_another_one() {
+    let more = alternating().replace(",\n", ".color(#00ff00),\n");
+    let text = format!("union(union(parts, blend: smooth(0.2)), {more}\n  blend: smooth(0.2))\n");
+    compare_materials(&(colored() + &text));
 }

@@ -4,7 +4,7 @@ use rustc_hash::FxHashMap;
 use sdfc_graph::{Bounds, Graph, Node, NodeId, ShapeId};
 
 use crate::reroll::chain::{Chain, min_chain};
-use crate::reroll::rewrite::MIN_OPERANDS;
+use crate::reroll::loops::MIN_OPERANDS;
 use crate::shapes::{is_bounded, minimum, shapes_below, unnamed_shape};
 
 /// Corners of a box around a scene's operands, without floors and the like: unbounded shapes that

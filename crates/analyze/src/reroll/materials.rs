@@ -7,32 +7,67 @@
 //! at that number. It is evaluated once, for the operand that is seen. The loop has the skip
 //! condition of the loop of the distance, so a ray runs only the iterations in its active list.
 //!
-//! Materials of blends are weighted sums over all operands, and stay unrolled.
+//! The material of a chain of blends becomes a loop that carries the distance and the material, and
+//! mixes in the material of one operand in each iteration (see `blended`).
 
 use rustc_hash::FxHashMap;
 use sdfc_graph::{
-    Binary, Const, FAR, Graph, IdMap, LoopVar, NodeId, SkipCondition, Table, Type, reachable,
+    Binary, Blends, Const, FAR, Graph, IdMap, LoopVar, MaterialChain, NodeId, Rewritten,
+    SkipCondition, Table, Type, fold_transforms, reachable,
 };
 
-use crate::reroll::rewrite::{
-    MIN_OPERANDS, common_operand, grouped, loop_over, positions_by_key, rebuilt,
-};
+use crate::reroll::blended::{MaterialLoop, joined};
+use crate::reroll::kinds::{common_operand, formulas_by_kind, grouped};
+use crate::reroll::loops::{MIN_OPERANDS, loop_over};
+use crate::reroll::rewrite::rebuilt;
 use crate::reroll::selection::{Selection, minimum, selections};
-use crate::reroll::template::{ShapeKeys, template};
+use crate::reroll::template::ShapeKeys;
 
 /// Largest number of different formulas of materials in one union. All of them are evaluated, so
 /// with more of them the selections stay as they are.
 const MAX_KINDS: usize = 64;
 
-/// Rewrites the properties of a material in which many operands are selected from. `replaced` maps
-/// distances of unions to those that [`super::rewrite::reroll`] has made of them.
+/// Folds the transforms of some roots, and of chains of blends that belong to them.
+pub(crate) fn fold_with_chains(
+    graph: &mut Graph,
+    roots: &[NodeId],
+    chains: Vec<MaterialChain>,
+) -> (Rewritten, Vec<MaterialChain>) {
+    let all: Vec<NodeId> =
+        roots.iter().copied().chain(chains.iter().flat_map(MaterialChain::nodes)).collect();
+    let mut folded = fold_transforms(graph, &all);
+    let nodes = folded.roots.split_off(roots.len());
+    let mut rest = &nodes[..];
+    let fold = |chain: MaterialChain| {
+        let (own, others) = rest.split_at(chain.nodes().len());
+        rest = others;
+        chain.with_nodes(own)
+    };
+    let chains = chains.into_iter().map(fold).collect();
+    (folded, chains)
+}
+
+/// Rewrites the properties of a material in which many operands are selected from or blended.
+/// `replaced` maps distances of unions to those that [`super::rewrite::reroll`] has made of them.
+/// `chains` are the chains of blends in the material.
 pub(crate) fn reroll_materials(
     graph: &mut Graph,
     fields: &[NodeId],
     replaced: &IdMap<NodeId>,
+    chains: &[MaterialChain],
 ) -> Vec<NodeId> {
     let mut lookups = Lookups::default();
     let mut keys = ShapeKeys::default();
+    let mut blends = Blends::default();
+    let plan = |chain: &MaterialChain| MaterialLoop::plan(graph, &mut keys, &mut blends, chain);
+    let loops: Vec<MaterialLoop> = joined(chains).iter().filter_map(plan).collect();
+    let loop_of: FxHashMap<NodeId, (usize, usize)> = loops
+        .iter()
+        .enumerate()
+        .flat_map(|(number, planned)| {
+            planned.fields.iter().enumerate().map(move |(at, &field)| (field, (number, at)))
+        })
+        .collect();
     for selection in selections(graph, &reachable(graph, fields)) {
         if selection.operands.len() < MIN_OPERANDS {
             continue;
@@ -42,12 +77,13 @@ pub(crate) fn reroll_materials(
             lookups.minima.insert(selection.distances, nearest.distance);
         }
     }
-    if lookups.values.is_empty() {
+    if lookups.values.is_empty() && loops.is_empty() {
         return fields.to_vec();
     }
     let mut new: IdMap<NodeId> = IdMap::default();
     for id in reachable(graph, fields) {
-        let known = lookups.of(graph, id).or_else(|| replaced.get(id));
+        let looped = loop_of.get(&id).map(|&(number, at)| loops[number].build(graph, &new)[at]);
+        let known = looped.or_else(|| lookups.of(graph, id)).or_else(|| replaced.get(id));
         let built = known.unwrap_or_else(|| rebuilt(graph, id, &new));
         new.insert(id, built);
     }
@@ -79,57 +115,10 @@ fn lookup(
     selection: &Selection,
     replaced: &IdMap<NodeId>,
 ) -> Option<(Numbered, Vec<NodeId>)> {
-    let kinds = kinds(graph, keys, selection)?;
+    let lists: Vec<&[NodeId]> = selection.values.iter().map(Vec::as_slice).collect();
     let nearest = nearest(graph, keys, &selection.operands, replaced)?;
-    let (kind, index) = places(graph, &kinds, nearest.number);
-    let mut values: Option<Vec<NodeId>> = None;
-    for (number, members) in kinds.iter().enumerate() {
-        let of_members = |values: &Vec<NodeId>| members.iter().map(|&at| values[at]).collect();
-        let lists: Vec<Vec<NodeId>> = selection.values.iter().map(of_members).collect();
-        let lists: Vec<&[NodeId]> = lists.iter().map(Vec::as_slice).collect();
-        let of_kind = template(graph, keys, &lists, None, index)?;
-        values = Some(match values {
-            None => of_kind,
-            Some(others) => {
-                let number = graph.number(number as f64);
-                let is_kind = graph.binary(Binary::Eq, kind, number);
-                let both = of_kind.into_iter().zip(others);
-                both.map(|(value, other)| graph.select(is_kind, value, other)).collect()
-            }
-        });
-    }
-    Some((nearest, values?))
-}
-
-/// Groups of operands whose materials are equal up to constants; `None` if there are too many.
-fn kinds(
-    graph: &mut Graph,
-    keys: &mut ShapeKeys,
-    selection: &Selection,
-) -> Option<Vec<Vec<usize>>> {
-    for values in &selection.values {
-        keys.compute(graph, values);
-    }
-    let key = |operand: usize| -> Vec<u32> {
-        selection.values.iter().map(|values| keys.of(values[operand])).collect()
-    };
-    let kinds = positions_by_key((0..selection.operands.len()).map(key));
-    (kinds.len() <= MAX_KINDS).then_some(kinds)
-}
-
-/// The kind of an operand's material and its index in that kind, by the number of the operand.
-fn places(graph: &mut Graph, kinds: &[Vec<usize>], number: NodeId) -> (NodeId, NodeId) {
-    if kinds.len() == 1 {
-        return (graph.number(0.0), number);
-    }
-    let mut elements = vec![Const::new(Type::Vec2, &[0.0; 2]); kinds.iter().map(Vec::len).sum()];
-    for (kind, members) in kinds.iter().enumerate() {
-        for (index, &member) in members.iter().enumerate() {
-            elements[member] = Const::new(Type::Vec2, &[kind as f64, index as f64]);
-        }
-    }
-    let place = graph.element(Table { ty: Type::Vec2, elements }, number);
-    (graph.swizzle(place, &[0]), graph.swizzle(place, &[1]))
+    let values = formulas_by_kind(graph, keys, &lists, nearest.number, MAX_KINDS)?;
+    Some((nearest, values))
 }
 
 /// A distance and the number of the operand that has it.

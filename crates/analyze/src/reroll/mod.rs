@@ -1,8 +1,11 @@
 //! Many similar operands as loops over lists of their constants.
 
 pub(crate) mod active_range;
+mod blended;
 pub(crate) mod chain;
 pub(crate) mod cullable;
+mod kinds;
+mod loops;
 pub(crate) mod marched_bounds;
 pub(crate) mod materials;
 pub(crate) mod rewrite;

@@ -3,24 +3,22 @@
 //! The pass works on minima of many operands and on chains of blends. Operands that are equal up to
 //! constants become one formula that reads the constants from a list, and a loop over that list.
 //! The size of the shader then does not grow with the number of operands. The operands of a hard
-//! minimum may be reordered. A blend is not associative, so only consecutive operands of a blend
-//! are combined.
+//! minimum may be reordered, so each kind has a loop. A blend is not associative, so only
+//! consecutive operands of a blend are combined. Where kinds alternate, one loop selects among
+//! their formulas.
 //!
 //! The pass recognises formulas, not shapes: `chain` finds the chains, and `template` compares
 //! operands up to constants.
 
-use std::hash::Hash;
-
-use rustc_hash::FxHashMap;
 use sdfc_graph::{
-    Blends, FAR, Graph, IdMap, IdSet, Loop, LoopVar, NodeId, SkipCondition, Type, substitute,
+    Blends, FAR, Graph, IdMap, IdSet, LoopVar, NodeId, SkipCondition, Type, substitute,
 };
 
+use crate::reroll::blended::{BlendedStep, blended_step};
 use crate::reroll::chain::{self, Chain};
-use crate::reroll::template::{ShapeKeys, template};
-
-/// Smallest number of similar operands that become a loop.
-pub(super) const MIN_OPERANDS: usize = 16;
+use crate::reroll::kinds::{common_operand, grouped};
+use crate::reroll::loops::{MIN_OPERANDS, loop_over};
+use crate::reroll::template::ShapeKeys;
 
 /// A loop that stands for many operands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -77,30 +75,6 @@ pub(crate) fn similar_groups(graph: &mut Graph, values: &[NodeId]) -> Vec<Vec<us
     let mut keys = ShapeKeys::default();
     let mut groups = grouped(graph, &mut keys, values);
     groups.retain(|group| group.len() >= MIN_OPERANDS);
-    groups
-}
-
-/// Groups of positions of values that are equal up to constants.
-pub(super) fn grouped(
-    graph: &mut Graph,
-    keys: &mut ShapeKeys,
-    values: &[NodeId],
-) -> Vec<Vec<usize>> {
-    keys.compute(graph, values);
-    positions_by_key(values.iter().map(|&value| keys.of(value)))
-}
-
-/// The positions of equal keys, in the order of their first positions.
-pub(super) fn positions_by_key<K: Eq + Hash>(keys: impl Iterator<Item = K>) -> Vec<Vec<usize>> {
-    let mut group_of: FxHashMap<K, usize> = FxHashMap::default();
-    let mut groups: Vec<Vec<usize>> = Vec::new();
-    for (position, key) in keys.enumerate() {
-        let group = *group_of.entry(key).or_insert(groups.len());
-        if group == groups.len() {
-            groups.push(Vec::new());
-        }
-        groups[group].push(position);
-    }
     groups
 }
 
@@ -218,12 +192,16 @@ impl Rerolling<'_> {
     fn plan_blend(&mut self, first: NodeId, steps: &[chain::Step]) -> Vec<Part> {
         let operands: Vec<NodeId> = steps.iter().map(|step| step.operand).collect();
         self.keys.compute(self.graph, &operands);
-        let mut parts = vec![Part::Value(first)];
-        let mut rest = steps;
-        while let Some(head) = rest.first() {
-            let kind = self.keys.of(head.operand);
-            let same = rest.iter().take_while(|step| self.keys.of(step.operand) == kind);
-            let (run, after) = rest.split_at(same.count());
+        let runs: Vec<&[chain::Step]> =
+            steps.chunk_by(|a, b| self.keys.of(a.operand) == self.keys.of(b.operand)).collect();
+        let first = Part::Value(first);
+        if runs.iter().any(|run| run.len() < MIN_OPERANDS)
+            && let Some(part) = self.blend_loop(steps)
+        {
+            return vec![first, part];
+        }
+        let mut parts = vec![first];
+        for run in runs {
             match self.blend_loop(run) {
                 Some(part) => parts.push(part),
                 None => parts.extend(run.iter().map(|step| Part::Step {
@@ -232,41 +210,13 @@ impl Rerolling<'_> {
                     operand: step.operand,
                 })),
             }
-            rest = after;
         }
         parts
     }
 
     fn blend_loop(&mut self, run: &[chain::Step]) -> Option<Part> {
-        if run.len() < MIN_OPERANDS {
-            return None;
-        }
-        let column = |of: fn(&chain::Step) -> NodeId| run.iter().map(of).collect::<Vec<_>>();
-        let (values, operands) = (column(|step| step.value), column(|step| step.operand));
-        let before = column(|step| step.before);
-        let index = self.graph.variable(0, LoopVar::Index, Type::Scalar);
-        let lists: [&[NodeId]; 2] = [&values, &operands];
-        let formulas = template(self.graph, &self.keys, &lists, Some(&before), index)?;
-        let [next, operand] = formulas[..] else { return None };
-        let margin = self.widest(run.iter().map(|step| step.width));
-        let skip = margin.map(|margin| SkipCondition { operand, margin });
+        let BlendedStep { next, skip, .. } = blended_step(self.graph, &mut self.keys, run)?;
         Some(Part::Loop { next, skip, operands: run.len(), blended: true })
-    }
-
-    /// The largest of some widths, if all are constants or all are the same node.
-    fn widest(&mut self, widths: impl Iterator<Item = NodeId>) -> Option<NodeId> {
-        let mut widest: Option<NodeId> = None;
-        for width in widths {
-            widest = match widest {
-                None => Some(width),
-                Some(other) if other == width => continue,
-                Some(other) => {
-                    let greater = self.graph.as_number(width)?.max(self.graph.as_number(other)?);
-                    Some(self.graph.number(greater))
-                }
-            };
-        }
-        widest
     }
 
     /// Builds a planned chain. `new` maps nodes to the rebuilt ones.
@@ -298,40 +248,6 @@ impl Rerolling<'_> {
         self.plans[plan].parts = parts;
         value.unwrap_or_else(|| self.graph.number(FAR))
     }
-}
-
-/// The formula of similar operands of a minimum, by the index of a loop; `None` if they are too few
-/// or differ in more than constants.
-pub(super) fn common_operand(
-    graph: &mut Graph,
-    keys: &ShapeKeys,
-    operands: &[NodeId],
-) -> Option<NodeId> {
-    if operands.len() < MIN_OPERANDS {
-        return None;
-    }
-    let index = graph.variable(0, LoopVar::Index, Type::Scalar);
-    template(graph, keys, &[operands], None, index)?.first().copied()
-}
-
-/// The state after a loop with one iteration for each operand.
-pub(super) fn loop_over(
-    graph: &mut Graph,
-    operands: usize,
-    init: Vec<NodeId>,
-    step: Vec<NodeId>,
-    skip: Option<SkipCondition>,
-) -> Vec<NodeId> {
-    let max_iterations = operands as u32;
-    graph.add_loop(Loop {
-        depth: 0,
-        max_iterations,
-        count: None,
-        condition: None,
-        init,
-        step,
-        skip,
-    })
 }
 
 /// Rebuilds a node if one of its arguments was replaced.

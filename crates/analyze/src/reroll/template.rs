@@ -5,8 +5,7 @@
 
 use rustc_hash::FxHashMap;
 use sdfc_graph::{
-    Binary, Const, Graph, IdMap, LoopVar, Node, NodeId, Stage, Table, Ternary, Type, Unary,
-    reachable,
+    Binary, Const, Graph, IdMap, Node, NodeId, Stage, Table, Ternary, Type, Unary, reachable,
 };
 
 /// Largest number of subexpressions of a template. Larger ones are not worth a loop.
@@ -151,9 +150,7 @@ impl ShapeKeys {
 
 /// A subexpression of the template.
 enum Expression {
-    /// The state of the loop.
-    State,
-    /// The same node in every iteration.
+    /// The same node in every iteration, or one that the caller gave.
     Same(NodeId),
     /// Constants that differ, by the index of their column.
     Column(usize),
@@ -170,19 +167,19 @@ struct Merging<'a> {
 }
 
 /// Builds one formula for each list of nodes, whose value is the list's node i where `index` is i.
-/// The first part of the state of a loop of depth 0 stands for the nodes of `before`. Returns
-/// `None` if the nodes differ in more than constants.
+/// `given` are lists whose formulas are known. Returns `None` if the nodes differ in more than
+/// constants.
 pub(super) fn template(
     graph: &mut Graph,
     keys: &ShapeKeys,
     lists: &[&[NodeId]],
-    before: Option<&[NodeId]>,
+    given: &[(&[NodeId], NodeId)],
     index: NodeId,
 ) -> Option<Vec<NodeId>> {
     let (expressions, known, columns) = Default::default();
     let mut merging = Merging { graph, keys, expressions, known, columns };
-    if let Some(before) = before {
-        merging.add(before.to_vec(), Expression::State);
+    for (list, formula) in given {
+        merging.add(list.to_vec(), Expression::Same(*formula));
     }
     let roots: Option<Vec<usize>> =
         lists.iter().map(|list| merging.expression(list.to_vec())).collect();
@@ -252,7 +249,6 @@ impl Merging<'_> {
         let mut values: Vec<NodeId> = Vec::with_capacity(self.expressions.len());
         for expression in &self.expressions {
             values.push(match expression {
-                Expression::State => self.graph.variable(0, LoopVar::State(0), Type::Scalar),
                 Expression::Same(id) => *id,
                 Expression::Column(number) => reads[*number],
                 Expression::Operation(operation, arguments) => {

@@ -37,5 +37,6 @@ pub(crate) fn culling(program: &Program, features: Features) -> Result<Option<Cu
     let shader = Shader::new(module, parts, features)?;
     let iterations = loops.iter().map(|looped| looped.iterations).collect();
     let is_joined = || loops.iter().map(|looped| looped.is_union_operand).collect();
-    Ok(Some(Culling { shader, iterations, cells: features.culls_by_cell().then(is_joined) }))
+    let cells = features.culls_by_cell().then(is_joined);
+    Ok(Some(Culling { shader, iterations, cells, soft_shadows: features.soft_shadows }))
 }

@@ -5,9 +5,14 @@
 //! coverage of mᵢ. If all weights are 0, or there is one sample, it is the first sample's material.
 //! The result is written in the shape's own point, with the children's materials as nodes, and is
 //! expanded like any other formula.
+//!
+//! A rule of selections and of blends v = b(u, s) that depend on u - s alone needs no sums: as
+//! ∂v/∂u = 1 - ∂v/∂s, the material of v is that of u mixed with that of s by ∂v/∂s.
 
 use rustc_hash::FxHashMap;
 
+use super::chains::{MaterialChain, Step, chains};
+use crate::blend::{Blends, blend_at};
 use crate::derive::TINY;
 use crate::derive::adjoints;
 use crate::graph::Graph;
@@ -22,21 +27,30 @@ type Fields = [NodeId; 6];
 const COVERAGE: usize = 1;
 
 /// A shape's material over its own point.
-pub(super) fn formulas(graph: &mut Graph, shape: ShapeId) -> Fields {
+#[derive(Clone, Debug)]
+pub(super) struct Material {
+    pub(super) fields: Fields,
+    /// The chains of blends in it.
+    pub(super) chains: Vec<MaterialChain>,
+}
+
+/// A shape's material over its own point.
+pub(super) fn formulas(graph: &mut Graph, shape: ShapeId) -> Material {
+    let without_chains = |fields| Material { fields, chains: Vec::new() };
     let rule = match graph.shape(shape).material {
-        MaterialRule::Explicit(fields) => return fields,
+        MaterialRule::Explicit(fields) => return without_chains(fields),
         MaterialRule::Weighted(rule) => rule,
     };
     let order = reachable_where(graph, &[rule], |id| graph.as_sample(id).is_none());
     let samples = samples_in_order(graph, shape, &order);
     match samples[..] {
-        [] => default_material(graph),
-        [only] => material_of(graph, only),
+        [] => without_chains(default_material(graph)),
+        [only] => without_chains(material_of(graph, only)),
         [first, ..] => {
             let first = material_of(graph, first);
             Selection::new(graph, &order, first)
                 .run(rule)
-                .unwrap_or_else(|| weighted(graph, rule, &samples))
+                .unwrap_or_else(|| without_chains(weighted(graph, rule, &samples)))
         }
     }
 }
@@ -103,15 +117,19 @@ fn weight(graph: &mut Graph, derivative: NodeId, coverage: NodeId) -> NodeId {
     graph.select(negative, covered, derivative)
 }
 
-/// Materials of a rule that only selects: the same comparisons select the material.
+/// Materials of a rule that only selects and blends: the same comparisons select the material, and
+/// the slopes of the blends mix it.
 struct Selection<'a> {
     graph: &'a mut Graph,
+    blends: Blends,
     /// Nodes that depend on a sample.
     live: IdSet,
     /// The first sample's material.
     first: Fields,
     /// Results by node and by whether its weight is negative.
     done: FxHashMap<(NodeId, bool), Fields>,
+    /// The blends whose materials were mixed.
+    mixed: Vec<(NodeId, Step)>,
 }
 
 /// The material that a node of a rule selects. `negated` flips the sign of the weight.
@@ -119,6 +137,7 @@ enum Choice {
     Material(Fields),
     Of { argument: NodeId, negated: bool },
     Between { condition: NodeId, yes: NodeId, no: NodeId },
+    Mixed { step: Step, fraction: NodeId },
 }
 
 impl<'a> Selection<'a> {
@@ -130,11 +149,12 @@ impl<'a> Selection<'a> {
                 live.insert(id);
             }
         }
-        Self { graph, live, first, done: FxHashMap::default() }
+        let (blends, done, mixed) = Default::default();
+        Self { graph, blends, live, first, done, mixed }
     }
 
-    /// The selected material; `None` if the rule does anything but select.
-    fn run(mut self, rule: NodeId) -> Option<Fields> {
+    /// The selected material; `None` if the rule does anything but select and blend.
+    fn run(mut self, rule: NodeId) -> Option<Material> {
         let root = (rule, false);
         let mut stack = vec![root];
         while let Some(&(id, negative)) = stack.last() {
@@ -149,13 +169,23 @@ impl<'a> Selection<'a> {
                     let no = self.done_or_wait((no, negative), &mut stack);
                     yes.zip(no).map(|(yes, no)| self.select(condition, yes, no))
                 }
+                Choice::Mixed { step: [before, operand], fraction } => {
+                    let a = self.done_or_wait((before, negative), &mut stack);
+                    let b = self.done_or_wait((operand, negative), &mut stack);
+                    a.zip(b).map(|(a, b)| {
+                        self.mixed.push((id, [before, operand]));
+                        mix(self.graph, a, b, fraction)
+                    })
+                }
             };
             if let Some(fields) = fields {
                 stack.truncate(before - 1);
                 self.done.insert((id, negative), fields);
             }
         }
-        self.done.get(&root).copied()
+        let fields_of = |id| self.done.get(&(id, false)).copied();
+        let chains = chains(&self.mixed, fields_of);
+        self.done.get(&root).map(|&fields| Material { fields, chains })
     }
 
     fn done_or_wait(&self, key: (NodeId, bool), stack: &mut Vec<(NodeId, bool)>) -> Option<Fields> {
@@ -171,6 +201,10 @@ impl<'a> Selection<'a> {
             return Some(Choice::Material(self.first));
         }
         let of = |argument, negated| Some(Choice::Of { argument, negated });
+        if let Some(step) = self.step(id).filter(|_| !negative) {
+            let slopes = adjoints(self.graph, id, &step[1..]);
+            return slopes.first().map(|&fraction| Choice::Mixed { step, fraction });
+        }
         match self.graph.node(id) {
             Node::Sample(..) => Some(Choice::Material(self.sampled(id, negative))),
             Node::Unary(Unary::Neg, a) => of(a, true),
@@ -215,6 +249,14 @@ impl<'a> Selection<'a> {
             | Node::Element(..)
             | Node::MaterialAt(..) => None,
         }
+    }
+
+    /// The blend of two live values that a node is, if it depends on their difference alone.
+    fn step(&mut self, id: NodeId) -> Option<Step> {
+        let blend = blend_at(self.graph, &mut self.blends, id)?;
+        let values = blend.ordered_values(self.graph, &mut self.blends);
+        let is_live = values.iter().all(|&value| self.is_live(value));
+        (is_live && blend.is_symmetric()).then_some(values)
     }
 
     fn is_live(&self, id: NodeId) -> bool {

@@ -126,13 +126,14 @@ fn use_everywhere() {
 }
 
 // The distance up to which a sample outside the box of cells must be exact. A ray that leads away
-// from the box never meets it again, and a clearance of twice that of full light has no effect.
+// from the box never meets it again, and a clearance of twice the least one so far, or of twice that
+// of full light, has no effect.
 fn exact_distance_outside(p: vec3f) -> f32 {
     if SOFT_SHADOWS {
         if records_clearance {
             let outward = p - clamp(p, cells.box_low, cells.box_high);
             if dot(outward, recorded_ray.direction) >= 0.0 {
-                return 2.0 * full_light * length(p - recorded_ray.origin);
+                return 2.0 * min(full_light, clearance) * length(p - recorded_ray.origin);
             }
         }
     }

@@ -197,12 +197,18 @@ fn active_interval(cone: Cone, loop_index: u32, iteration: f32) -> vec2f {
     return vec2f(ends.x, max(ends.x, ends.y));
 }
 
+// True at this level. The result depends on the invocation, too: Mesa's software driver compiles a
+// shader anew for each level if a branch depends on the level alone.
+fn is_level(at: u32, id: vec3u) -> bool {
+    return level == at && id.x <= 0x7fffffffu;
+}
+
 // Index of a tile's masks; those of level 1 come first.
 fn mask_words(at: u32, tile: vec2u, loop_index: u32) -> u32 {
     var before = 0u;
-    for (var below = 1u; below < at; below++) {
+    for (var below = 1u; below <= TOP_LEVEL; below++) {
         let counts = counts_of(below);
-        before += active_lists[LOOPS] * counts.x * counts.y;
+        before += select(0u, active_lists[LOOPS] * counts.x * counts.y, below < at);
     }
     let counts = counts_of(at);
     return (before + (loop_index * counts.y + tile.y) * counts.x + tile.x) * active_lists[MAX_WORDS];
@@ -221,7 +227,7 @@ fn mark(@builtin(global_invocation_id) id: vec3u) {
     let tile = vec2u(id.y % counts.x, id.y / counts.x);
     let cone = cone_around(tile);
     var candidates = 0xffffffffu >> (32u - min(32u, count_all - 32u * word));
-    if level < TOP_LEVEL {
+    if !is_level(TOP_LEVEL, id) {
         candidates = masks[mask_words(level + 1u, tile >> vec2u(WIDER_BITS), loop_index) + word];
     }
     var bits = 0u;

@@ -49,24 +49,9 @@ fn group_words(loop_index: u32, group: u32) -> u32 {
     return (loop_index * groups() + group) * active_lists[MAX_WORDS];
 }
 
-// One invocation for each group (x), 32 iterations (y) and loop (z).
-@compute @workgroup_size(64)
-fn least_of_groups(@builtin(global_invocation_id) id: vec3u) {
-    let count_all = active_lists[ALL_ITERATIONS + 2u * id.z];
-    if id.x >= groups() || 32u * id.y >= count_all {
-        return;
-    }
-    load_frame();
-    let ball = ball_around_group(read_cells(active_lists[CELLS]), id.x);
-    var least = 1e30;
-    for (var i = 32u * id.y; i < min(32u * id.y + 32u, count_all); i++) {
-        least = min(least, culling_bounds(id.z, f32(i), ball.center).z);
-    }
-    atomicMin(&counters[LEAST_OPERANDS + id.z * groups() + id.x], ordered_word(least));
-    add_evaluated();
-}
-
-// One invocation for each group (x), 32 iterations (y) and loop (z).
+// One invocation for each group (x), 32 iterations (y) and loop (z). It runs at level 0 to find the
+// least operand of each group, then at level 1 to find the iterations that can matter there. Drivers
+// inline `culling_bounds` wherever it is called, so each stage calls it at one place.
 @compute @workgroup_size(64)
 fn mark_groups(@builtin(global_invocation_id) id: vec3u) {
     let count_all = active_lists[ALL_ITERATIONS + 2u * id.z];
@@ -75,15 +60,23 @@ fn mark_groups(@builtin(global_invocation_id) id: vec3u) {
     }
     load_frame();
     let ball = ball_around_group(read_cells(active_lists[CELLS]), id.x);
-    let limit = limit_of(ball, ordered_value(atomicLoad(&counters[LEAST_OPERANDS + id.z * groups() + id.x])));
+    let least_of_group = LEAST_OPERANDS + id.z * groups() + id.x;
+    let limit = limit_of(ball, ordered_value(atomicLoad(&counters[least_of_group])));
+    var least = 1e30;
     var bits = 0u;
     for (var i = 0u; i < min(32u, count_all - 32u * id.y); i++) {
+        let bounds = culling_bounds(id.z, f32(32u * id.y + i), ball.center);
+        least = min(least, bounds.z);
         // The negation also keeps an operand that is not a number.
-        if !(culling_bounds(id.z, f32(32u * id.y + i), ball.center).y > limit) {
+        if !(bounds.y > limit) {
             bits |= 1u << i;
         }
     }
-    masks[group_words(id.z, id.x) + id.y] = bits;
+    if is_level(0u, id) {
+        atomicMin(&counters[least_of_group], ordered_word(least));
+    } else {
+        masks[group_words(id.z, id.x) + id.y] = bits;
+    }
     add_evaluated();
 }
 
@@ -120,35 +113,38 @@ fn list_cells(@builtin(global_invocation_id) id: vec3u) {
 fn list_cell(cells: Cells, ball: Ball, loop_index: u32, first_word: u32, record: u32) -> f32 {
     let count_all = active_lists[ALL_ITERATIONS + 2u * loop_index];
     let words = (count_all + 31u) / 32u;
-    var distance = 1e30;
-    var least = 1e30;
-    for (var word = 0u; word < words; word++) {
-        var bits = masks[first_word + word];
-        while bits != 0u {
-            let bounds = culling_bounds(loop_index, f32(32u * word + firstTrailingBit(bits)), ball.center);
-            bits &= bits - 1u;
-            distance = min(distance, bounds.x);
-            least = min(least, bounds.z);
-        }
-    }
-    let limit = limit_of(ball, least);
     for (var i = 0u; i < MAX_MASKED / 32u; i++) {
         kept_bits[i] = 0u;
     }
+    var distance = 1e30;
+    var least = 1e30;
+    var limit = 0.0;
     var position_in_group = 0u;
     var count = 0u;
-    for (var word = 0u; word < words; word++) {
+    // The words of the mask twice: first for the least operand, then for the list.
+    for (var i = 0u; i < 2u * words; i++) {
+        let is_first = i < words;
+        if i == words {
+            limit = limit_of(ball, least);
+        }
+        let word = select(i - words, i, is_first);
         var bits = masks[first_word + word];
         while bits != 0u {
             let iteration = f32(32u * word + firstTrailingBit(bits));
             bits &= bits - 1u;
-            if position_in_group >= MAX_MASKED {
-                count++;
-            } else if !(culling_bounds(loop_index, iteration, ball.center).y > limit) {
-                kept_bits[position_in_group / 32u] |= 1u << (position_in_group % 32u);
-                count++;
+            let bounds = culling_bounds(loop_index, iteration, ball.center);
+            if is_first {
+                distance = min(distance, bounds.x);
+                least = min(least, bounds.z);
+            } else {
+                if position_in_group >= MAX_MASKED {
+                    count++;
+                } else if !(bounds.y > limit) {
+                    kept_bits[position_in_group / 32u] |= 1u << (position_in_group % 32u);
+                    count++;
+                }
+                position_in_group++;
             }
-            position_in_group++;
         }
     }
     var next = cells.lists_end;

@@ -5,8 +5,8 @@
 use glam::DVec3;
 
 use super::culling_layout::{
-    EVALUATED, GROUPS, LEVELS, counters, each_level, first_record, group, head, lowest, mask_bytes,
-    max_words, scratch_bytes, stride, tile_mask_bytes, with_masks,
+    BEYOND, EVALUATED, GROUPS, LEVELS, counters, each_level, first_record, group, head, lowest,
+    mask_bytes, max_words, scratch_bytes, stride, tile_mask_bytes, with_masks,
 };
 use super::device::Gpu;
 use super::resources::{WORKGROUP, buffer, compute_pipeline, entry, table};
@@ -43,11 +43,12 @@ pub(crate) struct Culling {
 /// The stages for cells, in the order in which they run.
 #[derive(Clone, Debug)]
 struct CellStages {
-    least_of_groups: wgpu::ComputePipeline,
     mark_groups: wgpu::ComputePipeline,
     list_cells: wgpu::ComputePipeline,
     /// For each loop, true if no iteration need be run outside all cells.
     is_joined: Vec<bool>,
+    /// How far the cells extend beyond the surfaces' box, as a fraction of its longest side.
+    beyond: f64,
 }
 
 /// The buffers for a number of tiles.
@@ -74,7 +75,7 @@ impl ActiveBuffers {
 
 impl Culling {
     pub(crate) fn new(gpu: &Gpu, made: sdfc_codegen::Culling, uniform_count: usize) -> Self {
-        let sdfc_codegen::Culling { shader, iterations, cells } = made;
+        let sdfc_codegen::Culling { shader, iterations, cells, soft_shadows } = made;
         let table = table(gpu, &uniform_bytes(shader.lists()));
         let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some("culling"),
@@ -90,10 +91,10 @@ impl Culling {
             uniform
         });
         let cells = cells.map(|is_joined| CellStages {
-            least_of_groups: pipeline("least_of_groups"),
             mark_groups: pipeline("mark_groups"),
             list_cells: pipeline("list_cells"),
             is_joined,
+            beyond: BEYOND[usize::from(soft_shadows)],
         });
         Self { mark, list, cells, layout, table, levels: levels.collect(), iterations }
     }
@@ -152,7 +153,8 @@ impl Culling {
     /// one.
     pub(crate) fn open(&self, gpu: &Gpu, active: &ActiveBuffers, within: Option<[DVec3; 2]>) {
         let joined = self.cells.as_ref().map(|cells| &cells.is_joined[..]);
-        let head = head(&self.iterations, joined, within);
+        let beyond = self.cells.as_ref().map_or(0.0, |cells| cells.beyond);
+        let head = head(&self.iterations, joined, within.map(|within| (within, beyond)));
         gpu.queue.write_buffer(&active.lists, 0, &bytes_of(&head));
         let counters = counters(&self.iterations, joined.is_some());
         gpu.queue.write_buffer(&active.counters, 0, &bytes_of(&counters));
@@ -166,13 +168,12 @@ impl Culling {
         active: &ActiveBuffers,
         groups: u32,
     ) {
-        let (Some(cells), Some(bind_group)) = (&self.cells, active.bind_groups.first()) else {
-            return;
-        };
+        let Some(cells) = &self.cells else { return };
         let loops = self.iterations.len() as u32;
-        pass.set_bind_group(0, bind_group, &[]);
-        for stage in [&cells.least_of_groups, &cells.mark_groups] {
-            pass.set_pipeline(stage);
+        pass.set_pipeline(&cells.mark_groups);
+        // At level 0 the least operand of each group is found, at level 1 its masks.
+        for bind_group in active.bind_groups.iter().take(2) {
+            pass.set_bind_group(0, bind_group, &[]);
             pass.dispatch_workgroups(groups.div_ceil(LANES), max_words(&self.iterations), loops);
         }
         pass.set_pipeline(&cells.list_cells);

@@ -36,8 +36,9 @@ pub(super) const ABOUT_CELLS: u32 = 19;
 /// Mean capacity of a cell's lists, in words.
 pub(super) const CELL_WORDS: u32 = 64;
 /// Fraction of the longest side of the box of surfaces by which the cells reach beyond it: a ray
-/// that has left them is at least that far away from it.
-pub(super) const BEYOND: f64 = 0.06;
+/// that has left them is at least that far away from it. The second one is for scenes with soft
+/// shadows, whose rays run all iterations at most samples outside the cells.
+pub(super) const BEYOND: [f64; 2] = [0.06, 0.25];
 /// Length of a step by the bound of a cell alone, as a fraction of the cell's shortest side.
 pub(super) const SHORTEST: f64 = 0.5;
 /// Longer than any step: no limit.
@@ -64,11 +65,12 @@ pub(super) fn with_masks(tiles: [u32; 2]) -> u64 {
 
 /// The first words of `active_lists`: the layout, and the entries and lists that stand for all
 /// iterations. If rays use cells, then the same entries for points outside all cells, where
-/// `joined` tells for each loop that no iteration need be run, and the description of the cells.
+/// `joined` tells for each loop that no iteration need be run, and the description of the cells,
+/// around a box and the given fraction of its longest side.
 pub(super) fn head(
     iterations: &[u32],
     joined: Option<&[bool]>,
-    within: Option<[DVec3; 2]>,
+    within: Option<([DVec3; 2], f64)>,
 ) -> Vec<u32> {
     let loops = iterations.len() as u32;
     let (about, end) = (about_cells(iterations), first_record(iterations, joined.is_some()) as u32);
@@ -86,14 +88,14 @@ pub(super) fn head(
         let place = HEAD as usize + 2 * place;
         head.extend([if is_joined { 0 } else { head[place] }, head[place + 1]]);
     }
-    let Some(within) = within else {
+    let Some((within, beyond)) = within else {
         head.resize(head.len() + ABOUT_CELLS as usize, 0);
         return head;
     };
     let records = about + ABOUT_CELLS;
     let lists = records + (2 * loops + 1) * cell_count(iterations);
     head.extend([loops, group(iterations), records, about - 2 * loops, lists, end]);
-    let grid = grid(within, GROUP_SIDE * group(iterations));
+    let grid = grid(within, beyond, GROUP_SIDE * group(iterations));
     let is_joined = joined.iter().all(|&is_joined| is_joined);
     let least_step = if is_joined { SHORTEST * grid[1].recip().min_element() } else { FAR };
     head.push((least_step as f32).to_bits());
@@ -166,10 +168,10 @@ pub(super) fn tile_mask_bytes(iterations: &[u32]) -> [u64; 2] {
 
 /// The corner of the first cell and the number of cells per unit of length, then the corners of the
 /// box.
-pub(super) fn grid([lo, hi]: [DVec3; 2], to_axis: u32) -> [DVec3; 4] {
+pub(super) fn grid([lo, hi]: [DVec3; 2], beyond: f64, to_axis: u32) -> [DVec3; 4] {
     let margin = DVec3::splat(BOX_MARGIN * lo.abs().max(hi.abs()).max_element().max(1e-20));
     let [lo, hi] = [lo - margin, hi + margin];
-    let beyond = DVec3::splat(BEYOND * (hi - lo).max_element());
+    let beyond = DVec3::splat(beyond * (hi - lo).max_element());
     let low = lo - beyond;
     let side = (hi + beyond - low) / f64::from(to_axis);
     [low, side.recip(), lo, hi]
@@ -222,7 +224,7 @@ mod tests {
         let (first, _, head) = head_of(None, None);
         assert_eq!(first as usize, head.len());
 
-        let within = Some([DVec3::splat(-1.0), DVec3::ONE]);
+        let within = Some(([DVec3::splat(-1.0), DVec3::ONE], BEYOND[0]));
         let (first, cells, head) = head_of(Some(&[true, false]), within);
         assert_eq!(cells + ABOUT_CELLS as usize, head.len());
         // The order of `read_cells`.

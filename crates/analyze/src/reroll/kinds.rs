@@ -1,0 +1,100 @@
+//! Kinds of values: those of a kind are equal up to constants and share a formula.
+
+use std::hash::Hash;
+
+use rustc_hash::FxHashMap;
+use sdfc_graph::{Binary, Const, Graph, LoopVar, NodeId, Table, Type};
+
+use crate::reroll::loops::MIN_OPERANDS;
+use crate::reroll::template::{ShapeKeys, template};
+
+/// Groups of positions of values that are equal up to constants.
+pub(super) fn grouped(
+    graph: &mut Graph,
+    keys: &mut ShapeKeys,
+    values: &[NodeId],
+) -> Vec<Vec<usize>> {
+    keys.compute(graph, values);
+    positions_by_key(values.iter().map(|&value| keys.of(value)))
+}
+
+/// The positions of equal keys, in the order of their first positions.
+pub(super) fn positions_by_key<K: Eq + Hash>(keys: impl Iterator<Item = K>) -> Vec<Vec<usize>> {
+    let mut group_of: FxHashMap<K, usize> = FxHashMap::default();
+    let mut groups: Vec<Vec<usize>> = Vec::new();
+    for (position, key) in keys.enumerate() {
+        let group = *group_of.entry(key).or_insert(groups.len());
+        if group == groups.len() {
+            groups.push(Vec::new());
+        }
+        groups[group].push(position);
+    }
+    groups
+}
+
+/// The formula of similar operands of a minimum, by the index of a loop; `None` if they are too few
+/// or differ in more than constants.
+pub(super) fn common_operand(
+    graph: &mut Graph,
+    keys: &ShapeKeys,
+    operands: &[NodeId],
+) -> Option<NodeId> {
+    if operands.len() < MIN_OPERANDS {
+        return None;
+    }
+    let index = graph.variable(0, LoopVar::Index, Type::Scalar);
+    template(graph, keys, &[operands], &[], index)?.first().copied()
+}
+
+/// One formula for each list of nodes, whose value is the list's node i where `number` is i.
+/// Positions whose nodes are equal up to constants share a formula; all formulas are evaluated, and
+/// a list says which one counts. Returns `None` if there are more than `max_kinds` of them.
+pub(super) fn formulas_by_kind(
+    graph: &mut Graph,
+    keys: &mut ShapeKeys,
+    lists: &[&[NodeId]],
+    number: NodeId,
+    max_kinds: usize,
+) -> Option<Vec<NodeId>> {
+    lists.iter().for_each(|list| keys.compute(graph, list));
+    let key = |position: usize| -> Vec<u32> {
+        lists.iter().map(|list| keys.of(list[position])).collect()
+    };
+    let kinds = positions_by_key((0..lists.first()?.len()).map(key));
+    if kinds.len() > max_kinds {
+        return None;
+    }
+    let (kind, index) = places(graph, &kinds, number);
+    let mut values: Option<Vec<NodeId>> = None;
+    for (number, members) in kinds.iter().enumerate() {
+        let of_members = |list: &&[NodeId]| members.iter().map(|&at| list[at]).collect();
+        let columns: Vec<Vec<NodeId>> = lists.iter().map(of_members).collect();
+        let columns: Vec<&[NodeId]> = columns.iter().map(Vec::as_slice).collect();
+        let of_kind = template(graph, keys, &columns, &[], index)?;
+        values = Some(match values {
+            None => of_kind,
+            Some(others) => {
+                let number = graph.number(number as f64);
+                let is_kind = graph.binary(Binary::Eq, kind, number);
+                let both = of_kind.into_iter().zip(others);
+                both.map(|(value, other)| graph.select(is_kind, value, other)).collect()
+            }
+        });
+    }
+    values
+}
+
+/// The kind of a member and its index in that kind, by the number of the member.
+fn places(graph: &mut Graph, kinds: &[Vec<usize>], number: NodeId) -> (NodeId, NodeId) {
+    if kinds.len() == 1 {
+        return (graph.number(0.0), number);
+    }
+    let mut elements = vec![Const::new(Type::Vec2, &[0.0; 2]); kinds.iter().map(Vec::len).sum()];
+    for (kind, members) in kinds.iter().enumerate() {
+        for (index, &member) in members.iter().enumerate() {
+            elements[member] = Const::new(Type::Vec2, &[kind as f64, index as f64]);
+        }
+    }
+    let place = graph.element(Table { ty: Type::Vec2, elements }, number);
+    (graph.swizzle(place, &[0]), graph.swizzle(place, &[1]))
+}
