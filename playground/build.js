@@ -1,31 +1,15 @@
 // Builds the page into `target/playground`, and measures it. Run it with `npm run build`.
 
 import { cp, mkdir, readFile, readdir, rm, stat, writeFile } from "node:fs/promises";
-import { join } from "node:path";
+import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
 import { brotliCompressSync, gzipSync } from "node:zlib";
 import { build } from "esbuild";
+import { findScenes } from "./scenes.js";
 
 const here = fileURLToPath(new URL(".", import.meta.url));
 const [src, root] = [join(here, "src"), join(here, "..")];
 const dist = join(root, "target/playground");
-/// The folders of the gallery.
-const FOLDERS = [
-  ["First steps", "course"], ["Language", "."], ["Gallery", "gallery"], ["Camera, light, settings", "settings"],
-];
-
-const collator = new Intl.Collator("en");
-async function examples() {
-  const found = [];
-  for (const [title, folder] of FOLDERS) {
-    const all = await readdir(join(root, "examples", folder));
-    const files = all.filter((name) => name.endsWith(".sdf")).sort(collator.compare)
-      .map((name) => (folder === "." ? name : `${folder}/${name}`));
-    found.push({ title, files });
-  }
-  return found;
-}
-
 /// Returns the functions and shapes of the library, with their documentation.
 async function library() {
   const folder = join(root, "crates/lang/std");
@@ -58,18 +42,22 @@ async function bundle(options) {
 
 const started = performance.now();
 await rm(dist, { recursive: true, force: true });
-await mkdir(join(dist, "examples"), { recursive: true });
-const list = await examples();
-const entries = ["main.js", "compiler.worker.js", "draw.worker.js", "style.css"];
+const sections = await findScenes(root);
+const list = sections.map(({ title, scenes }) => ({ title, scenes: scenes.map(({ name, title }) => ({ name, title })) }));
+const plugins = [
+  virtual("examples", () => JSON.stringify(list)),
+  virtual("library", async () => JSON.stringify(await library())),
+];
+// The editor is a file of its own, so that the workers start before it is loaded.
+await bundle({
+  entryPoints: [join(src, "main.js")], outdir: dist, splitting: true, chunkNames: "[name]", plugins,
+});
+const entries = ["compiler.worker.js", "draw.worker.js", "style.css"];
 await bundle({
   entryPoints: entries.map((name) => join(src, name)),
   outdir: dist,
   // The package for Node.js reads files; a browser never reaches that line.
   external: ["node:fs/promises"],
-  plugins: [
-    virtual("examples", () => JSON.stringify(list)),
-    virtual("library", async () => JSON.stringify(await library())),
-  ],
 });
 
 const worker = await bundle({ entryPoints: [join(src, "draw.worker.js")], format: "iife", write: false });
@@ -87,10 +75,11 @@ await cp(join(src, "index.html"), join(dist, "index.html"));
 await cp(join(root, "crates/web/npm/sdfc.wasm"), join(dist, "sdfc.wasm")).catch(() => {
   throw new Error("there is no crates/web/npm/sdfc.wasm: run crates/web/npm/build.sh first");
 });
-for (const name of list.flatMap(({ files }) => files)) {
-  for (const file of [name, name.replace(/\.sdf$/, ".png")]) {
-    await cp(join(root, "examples", file), join(dist, "examples", file));
-  }
+for (const { name, source, picture } of sections.flatMap(({ scenes }) => scenes)) {
+  const path = join(dist, "examples", name);
+  await mkdir(dirname(path), { recursive: true });
+  await writeFile(path, source);
+  await cp(join(root, picture), path.replace(/sdf$/, "png"));
 }
 
 const size = (bytes) => `${(bytes / 1024).toFixed(0).padStart(6)} KiB`;

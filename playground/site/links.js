@@ -1,6 +1,7 @@
 // Links of pages: where they lead on the site, and whether they lead anywhere.
 
 import { existsSync, statSync } from "node:fs";
+import { readFile } from "node:fs/promises";
 import { join, posix } from "node:path";
 
 /// Files that the site has copies of. All others are on the web page of the repository.
@@ -71,4 +72,18 @@ export class Links {
 /// Returns the address of a file of the site as a page links to it.
 export function relative(from, to) {
   return posix.relative(posix.dirname(from), to) || posix.basename(to);
+}
+
+/// Returns the addresses in the finished pages of a folder that lead to no file.
+export async function missingFiles(folder, urls) {
+  const found = await Promise.all(urls.map(async (url) => {
+    const text = await readFile(join(folder, url), "utf8");
+    const hrefs = [...text.matchAll(/ (?:href|src|data-src)="([^"]*)"/g)].map(([, href]) => href);
+    return hrefs.filter((href) => {
+      const path = href.split(/[?#]/)[0];
+      const isOwn = path !== "" && !/^[a-z]+:/.test(path);
+      return isOwn && !existsSync(join(folder, posix.dirname(url), decodeURI(path)));
+    }).map((href) => `${url}: ${href}`);
+  }));
+  return found.flat();
 }

@@ -92,7 +92,7 @@ function addAnchors(tokens, page) {
       headings.add(anchor);
       if (!stated.includes(anchor)) token.attrSet("id", anchor);
       page.title ??= title;
-      section = { title, anchor: token.tag === "h1" ? "" : anchor, text: [] };
+      section = { title, anchor: token.tag === "h1" ? "" : anchor, level: Number(token.tag[1]), text: [] };
       page.sections.push(section);
     } else if (/^(?:inline|fence|code_block)$/.test(token.type) && tokens[at - 1]?.type !== "heading_open") {
       section?.text.push(token.content);
@@ -116,7 +116,7 @@ function rewrite(text, links, page) {
 }
 
 /// Returns the text of a scene with colours, as HTML.
-function colored(text) {
+export function colored(text) {
   let out = "";
   let end = 0;
   highlightTree(sdf.parser.parse(text), highlighter, (from, to, name) => {

@@ -4,7 +4,7 @@ import { readFile, readdir } from "node:fs/promises";
 import { join } from "node:path";
 
 /// The pages outside `docs`, and their addresses.
-const TOP = { "README.md": "index.html", "CONTRIBUTING.md": "contributing.html", "CHANGELOG.md": "changelog.html", "SECURITY.md": "security.html" };
+const TOP = { "README.md": "about.html", "CONTRIBUTING.md": "contributing.html", "CHANGELOG.md": "changelog.html", "SECURITY.md": "security.html" };
 /// The list of all pages, which becomes the navigation.
 export const CONTENTS = "docs/README.md";
 

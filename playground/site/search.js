@@ -1,4 +1,4 @@
-// Search, and the navigation of narrow windows.
+// The search.
 
 import MiniSearch from "minisearch";
 import { OPTIONS } from "./search_options.js";
@@ -7,14 +7,6 @@ const MOST = 12;
 const { root } = document.body.dataset;
 const input = document.getElementById("search");
 const found = document.getElementById("found");
-const contents = document.getElementById("contents");
-
-// Beside the text the list of pages is always open.
-const wide = matchMedia("(min-width: 900px)");
-const unfold = () => (contents.open = wide.matches);
-wide.addEventListener("change", unfold);
-unfold();
-contents.querySelector("[aria-current]")?.scrollIntoView({ block: "center" });
 
 let search = null;
 const ready = () => (search ??= fetch(`${root}search.json`).then((response) => response.text())

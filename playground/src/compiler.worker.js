@@ -2,11 +2,7 @@
 
 import { load } from "../../crates/web/npm/index.js";
 
-// The first compilation reads the library. It is done while the page waits for the GPU.
-const ready = load(new URL("sdfc.wasm", self.location.href)).then((compiler) => {
-  compiler.compile("sphere(1)", { emit: "render", stage: "fragment" });
-  return compiler;
-});
+const ready = load(new URL("sdfc.wasm", self.location.href));
 
 onmessage = async ({ data: { id, source, options } }) => {
   try {

@@ -1,5 +1,7 @@
 // Saves the shader, the picture, and a page that needs no other file.
 
+import { SHADERS, standalonePage } from "./standalone_page.js";
+
 const EXTENSIONS = {
   wgsl: "wgsl", glsl: "glsl", "glsl-es": "glsl", hlsl: "hlsl", msl: "metal", spirv: "spv", shadertoy: "glsl",
 };
@@ -26,18 +28,11 @@ export function save(content, name, type = "text/plain") {
 }
 
 /// Returns a page that draws the scene, with its inputs, without any other file.
-export async function standalone(compiler, { source, ...state }) {
-  const { values } = state;
-  const [code, wgsl, glsl] = await Promise.all([
+export async function standalone(compiler, state) {
+  const { source, values } = state;
+  const [code, ...compiled] = await Promise.all([
     fetch("standalone.html").then((response) => response.text()),
-    compiler.compile(source, { target: "wgsl", emit: "render", stage: "fragment", values }),
-    compiler.compile(source, { target: "glsl-es", emit: "render", values }),
+    ...SHADERS.map((options) => compiler.compile(source, { ...options, values })),
   ]);
-  const shaders = { wgsl, "glsl-es": glsl };
-  const failed = Object.values(shaders).find(({ text }) => text === null);
-  if (failed) throw new Error(failed.diagnostics[0].message);
-  const kept = Object.entries(shaders).map(([target, { text, reflection }]) =>
-    [target, { text, reflection }]);
-  const data = JSON.stringify({ shaders: Object.fromEntries(kept), source, ...state });
-  return code.replace("/*SCENE*/", () => `SCENE = ${data.replaceAll("<", "\\u003c")}`);
+  return standalonePage(code, compiled, state);
 }

@@ -1,12 +1,10 @@
 // The examples of the repository, with their pictures.
 
-// The bundler makes this list from the folder `examples`.
+// The bundler makes this list from the gallery and the folder `examples`.
 import examples from "examples";
 
 /// The scene that a first visitor sees.
 export const FIRST = "params.sdf";
-
-export const names = examples.flatMap(({ files }) => files);
 
 export async function source(name) {
   const response = await fetch(`examples/${name}`);
@@ -16,21 +14,21 @@ export async function source(name) {
 
 /// Fills the gallery. `chosen` receives the name of an example.
 export function fillGallery(parent, chosen) {
-  for (const { title, files } of examples) {
+  for (const { title, scenes } of examples) {
     const head = document.createElement("h3");
     head.textContent = title;
     const grid = document.createElement("div");
-    grid.append(...files.map((name) => tile(name, chosen)));
+    grid.append(...scenes.map((scene) => tile(scene, chosen)));
     parent.append(head, grid);
   }
 }
 
-function tile(name, chosen) {
+function tile({ name, title }, chosen) {
   const button = document.createElement("button");
   const picture = Object.assign(new Image(), {
     loading: "lazy", alt: "", src: `examples/${name.replace(/\.sdf$/, ".png")}`,
   });
-  button.append(picture, name.replace(/^.*\/|\.sdf$/g, "").replaceAll("_", " "));
+  button.append(picture, title);
   button.addEventListener("click", () => chosen(name));
   return button;
 }

@@ -1,11 +1,12 @@
 // The playground: an editor, the picture of its scene, and what belongs to them.
 
 import { CompilerClient } from "./compiler.js";
-import { makeEditor } from "./editor.js";
 import { PARTS, TARGETS, exported, save, standalone } from "./exports.js";
 import { FIRST, fillGallery, source as exampleSource } from "./gallery.js";
 import { fromFragment, toFragment } from "./link.js";
 import { Stage } from "./stage.js";
+import * as webgl2 from "./webgl2.js";
+import * as webgpu from "./webgpu.js";
 
 const find = (id) => document.getElementById(id);
 const query = new URLSearchParams(location.search);
@@ -16,16 +17,21 @@ const THEME = "sdfc-theme";
 const SLOW = 500;
 /// A compilation that has taken more milliseconds than this is ended by the next edit.
 const LONG = 1500;
-const ANY_TARGET = { target: "wgsl", emit: "render", stage: "fragment" };
 
-const compiler = new CompilerClient();
 const times = {};
+/// The editor, and before it is loaded an object with the first text.
 let editor;
-/// What the compiler writes for the backend that the drawing worker has opened.
-let target = null;
+/// What the compiler writes: for the backend that the drawing worker has opened, and before that
+/// for the one that it will probably open.
+let target = isLikely(webgpu) ? webgpu.target : webgl2.target;
 let opened;
 let isOpen;
 
+function isLikely({ id }) {
+  return query.get("backend") === id || (navigator.gpu && query.get("backend") === null);
+}
+
+const compiler = new CompilerClient();
 const makeWorker = () => new Worker(new URL("draw.worker.js", import.meta.url), { type: "module" });
 const stage = new Stage(
   { canvas: find("picture"), form: find("params"), bar: find("clock"), play: find("play"), time: find("time") },
@@ -152,12 +158,14 @@ function startDrawing() {
 
 async function compileOnce() {
   if (!stage.picture.isRunning) startDrawing();
-  await isOpen;
   const source = editor.text();
-  // Without a backend the scene is compiled for its errors.
-  const options = { ...(target ?? ANY_TARGET), name: "scene.sdf", values: stage.values };
+  const compiledFor = (target) => compiler.compile(source, { ...target, name: "scene.sdf", values: stage.values });
   const waiting = setTimeout(() => say("compiling: an edit ends it"), LONG);
-  const compiled = await compiler.compile(source, options).finally(() => clearTimeout(waiting));
+  // Without a backend the scene is compiled for its errors.
+  const guess = target;
+  const first = compiledFor(guess).finally(() => clearTimeout(waiting));
+  const [found] = await Promise.all([first, isOpen]);
+  const compiled = target.target === guess.target ? found : await compiledFor(target);
   const { text, reflection, diagnostics, milliseconds } = compiled;
   times.compiled = milliseconds;
   // Positions in an old text would be wrong.
@@ -325,17 +333,24 @@ function connectExport() {
 }
 
 async function main() {
-  connect();
   startDrawing();
+  const loading = import("./editor.js");
   const { source, ...state } = await startScene();
+  // The first scene is compiled and drawn while the editor is loaded.
+  let rows = [];
+  editor = { text: () => source, report: (found) => (rows = found) };
+  stage.reset(state);
+  if (query.has("time")) stage.stopClock(Number(query.get("time")) || 0);
+  const compiled = compile();
+  const { makeEditor } = await loading;
   editor = makeEditor(find("editor"), source, () => {
     complaint = null;
     localStorage.setItem(DRAFT, editor.text());
     compile();
   });
-  stage.reset(state);
-  if (query.has("time")) stage.stopClock(Number(query.get("time")) || 0);
-  await compile();
+  editor.report(rows);
+  connect();
+  await compiled;
 }
 
 main().catch((error) => failed(error.message));

@@ -79,6 +79,7 @@ fn main() {
     let name = "the_playground_survives_a_long_compilation".to_owned();
     add(name, Box::new(survival::long_compilation));
     add("the_site_leads_to_the_playground".to_owned(), Box::new(site::leads_to_the_playground));
+    add("the_site_shows_a_scene".to_owned(), Box::new(site::shows_a_scene));
     add("the_site_fits_a_phone".to_owned(), Box::new(site::fits_a_phone));
     if std::env::var_os(measure::MEASURE).is_some() {
         add("the_playground_times".to_owned(), Box::new(measure::times));

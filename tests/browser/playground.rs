@@ -9,6 +9,7 @@ use sdfc::{CompileValues, Compiler, FrameValues, Scene};
 use sdfc_tests::repository;
 
 use crate::chromium::{self, Chromium};
+use crate::measure::scene;
 use crate::pages::{Pixels, check_at, drawn_at};
 use crate::server::Server;
 use crate::{Session, compiler, survival};
@@ -36,8 +37,9 @@ polygon([for i in 0..90: corner(i)]).extrude(0.5)";
 type Check = fn(&mut Session, &str) -> Result<(), Failed>;
 
 /// What the page does with either backend.
-pub const BY_BACKEND: [(&str, Check); 6] = [
+pub const BY_BACKEND: [(&str, Check); 7] = [
     ("follows_the_text", follows_the_text),
+    ("draws_many_parts", draws_many_parts),
     ("follows_sliders", follows_sliders),
     ("survives_a_lost_gpu", survival::lost_gpu),
     ("survives_a_refused_shader", survival::refused_shader),
@@ -207,6 +209,15 @@ pub fn follows_the_text(session: &mut Session, backend: &str) -> Result<(), Fail
     if left != 0 {
         return Err(format!("{left} problems are left").into());
     }
+    page.expect_no_complaint()
+}
+
+/// A scene of thirty parts is drawn: browsers once took minutes for its GLSL.
+pub fn draws_many_parts(session: &mut Session, backend: &str) -> Result<(), Failed> {
+    let mut page = Page::open(&mut session.chromium, &format!("?backend={backend}"))?;
+    let text = scene(30);
+    page.write(&text, "drawn")?;
+    page.expect_picture(&compiled(&text)?, None, "thirty parts")?;
     page.expect_no_complaint()
 }
 

@@ -7,7 +7,7 @@ use libtest_mimic::Failed;
 use sdfc_tests::repository;
 
 use crate::Session;
-use crate::playground::{Page, build};
+use crate::playground::{Page, build, compiled};
 use crate::server::Server;
 
 const WINDOW: [u32; 2] = [1400, 700];
@@ -29,7 +29,7 @@ fn server() -> Result<&'static Server, Failed> {
 pub fn leads_to_the_playground(session: &mut Session) -> Result<(), Failed> {
     let server = server()?;
     let chromium = &mut session.chromium;
-    chromium.open(&server.url("index.html"), WINDOW)?;
+    chromium.open(&server.url("tutorial.html"), WINDOW)?;
     chromium.evaluate(LOADED)?;
     chromium.click("#search", [0.5, 0.5])?;
     chromium.insert("menger")?;
@@ -52,6 +52,27 @@ pub fn leads_to_the_playground(session: &mut Session) -> Result<(), Failed> {
     }
     page.expect_no_complaint()?;
     only_from(page.chromium, server)
+}
+
+/// The first page draws its scene, and its pictures lead to scenes of the playground.
+pub fn shows_a_scene(session: &mut Session) -> Result<(), Failed> {
+    let server = server()?;
+    let chromium = &mut session.chromium;
+    chromium.open(&server.url("index.html"), WINDOW)?;
+    chromium.evaluate(RUNS)?;
+    only_from(chromium, server)?;
+    let tile = chromium.evaluate("document.querySelector('.tile').href")?;
+    let tile = tile.as_str().ok_or("no picture")?.to_owned();
+
+    chromium.open(&server.url("hero.html"), WINDOW)?;
+    let mut page = Page { chromium };
+    page.expect_state("drawn")?;
+    let source = std::fs::read_to_string(repository().join("playground/site/hero.sdf"))?;
+    page.expect_picture(&compiled(&source)?, None, "the first page")?;
+
+    page.chromium.open(&tile, WINDOW)?;
+    page.expect_state("drawn")?;
+    page.expect_no_complaint()
 }
 
 /// No page is wider than the window of a phone: what is wide scrolls by itself.
@@ -93,6 +114,12 @@ const EXCESS: &str = "new Promise(done => {
         const { scrollWidth, clientWidth } = document.documentElement;
         done(scrollWidth - clientWidth);
     };
+    look();
+})";
+
+/// Waits until the scene of the first page replaces its picture.
+const RUNS: &str = "new Promise(done => {
+    const look = () => document.querySelector('.live iframe.ready') ? done(true) : setTimeout(look, 20);
     look();
 })";
 

@@ -1,5 +1,7 @@
 //! The field of a scene at points.
 
+use sdfc::FieldSample;
+
 use crate::boundary::{Failure, guarded, handle, slice, store, writable};
 use crate::scene::Scene;
 use crate::status::Status;
@@ -46,14 +48,10 @@ pub unsafe extern "C" fn sdfc_gradient(
         // SAFETY: guaranteed by the caller, see the safety section of this function.
         let (scene, points) = unsafe { (handle(scene)?, slice::<[f64; 3]>(points.cast(), count)?) };
         writable(gradients.cast::<[f64; 4]>(), count)?;
-        let mut field = scene.scene.field(&scene.frame)?;
-        let rows = points.iter().map(|point| {
-            let found = field.gradient(*point);
-            let [x, y, z] = found.gradient;
-            [x, y, z, found.distance]
-        });
+        let found = scene.scene.field(&scene.frame)?.gradients(points);
+        let row = |FieldSample { gradient: [x, y, z], distance }| [x, y, z, distance];
         // All of them before the first is stored, because `gradients` may overlap `points`.
-        let rows: Vec<[f64; 4]> = rows.collect();
+        let rows: Vec<[f64; 4]> = found.into_iter().map(row).collect();
         // SAFETY: guaranteed by the caller, see the safety section of this function.
         unsafe { store(gradients, rows.as_flattened()) }
     })

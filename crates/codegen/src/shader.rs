@@ -12,11 +12,11 @@ use crate::reflection::{ModuleParts, Reflection};
 use crate::stopwatch::Stopwatch;
 use crate::target::{Code, Target};
 use crate::write::instructions::{FunctionCost, count};
-use crate::write::{self, validate};
+use crate::write::{self, glsl_select, validate};
 
-/// Prefixes of the functions that naga's writers add: conversions, and in HLSL constructors of
-/// arrays. Two sources in one file would both declare them.
-const WRITERS_OWN: [&str; 2] = ["naga_", "Constructarray"];
+/// Prefixes of the functions that writers add: conversions, in HLSL constructors of arrays, and in
+/// GLSL ES selections. Two sources in one file would both declare them.
+const WRITERS_OWN: [&str; 3] = ["naga_", "Constructarray", glsl_select::NAME];
 
 /// A shader in a target's language, and its reflection with the names of that source.
 #[derive(Clone, Debug, PartialEq)]

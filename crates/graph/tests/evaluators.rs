@@ -37,6 +37,11 @@ fn frame<N: Number>(param: N) -> FrameValues<N> {
     FrameValues { params: vec![[param; 4]], time: zero, frame: zero }
 }
 
+/// Whether two results are the same number, or both none.
+fn same(a: f64, b: f64) -> bool {
+    a.to_bits() == b.to_bits() || (a.is_nan() && b.is_nan())
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(2000) })]
 
@@ -134,6 +139,27 @@ proptest! {
                     "node {} = {:?}: {value} at {point:?}, {param} is on none of {found:?}",
                     root.index(), graph.node(root),
                 );
+            }
+        }
+    }
+
+    #[test]
+    fn a_packet_of_gradients_has_those_of_its_points(
+        steps in steps(40),
+        point in prop::array::uniform3(coordinate()),
+        param in coordinate(),
+    ) {
+        let graph = graph(&steps);
+        let all: Vec<NodeId> = graph.ids().collect();
+        let tape = Tape::new(&graph, &all).unwrap();
+        let mut one = tape.prepare::<Dual>(&frame(param));
+        let mut many = tape.prepare::<Dual<Packet<f64, 2>>>(&frame(param));
+        let expected = one.eval(Dual::point(point)).to_vec();
+        let found = many.eval(Dual::point(point.map(|x| Packet([0.5, x]))));
+        for (id, (one, two)) in all.iter().zip(expected.iter().zip(found)) {
+            prop_assert!(same(one[0].value, two[0].value.0[1]), "{:?}", graph.node(*id));
+            for (partial, pair) in one[0].partials.iter().zip(two[0].partials) {
+                prop_assert!(same(*partial, pair.0[1]), "{:?}", graph.node(*id));
             }
         }
     }

@@ -9,6 +9,7 @@ use naga::{
 use sdfc_march::{SHADERTOY_HEAD, SHADERTOY_TAIL, stubs};
 
 use super::common::{WrittenModule, bindings, checked_u8, one_line, refused, validate};
+use super::glsl_select::without_branches;
 use crate::error::Error;
 use crate::link::template::find_function;
 use crate::names::final_names;
@@ -69,6 +70,9 @@ fn glsl_stage(
     let mut blocks: Vec<_> = reflected.uniforms.into_iter().collect();
     blocks.sort_unstable();
     let blocks = rename_blocks(&mut text, module, entry.stage, blocks);
+    if target == Target::GlslEs {
+        text = without_branches(&text);
+    }
     // The version must come first.
     let (version, rest) = text.split_once('\n').unwrap_or((&text, ""));
     let code = Code::Text(format!("{version}\n// {}\n{rest}", one_line(comment)));

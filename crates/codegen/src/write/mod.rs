@@ -2,6 +2,7 @@
 
 mod common;
 mod glsl;
+pub(crate) mod glsl_select;
 mod hlsl;
 mod hlsl_lists;
 pub(crate) mod instructions;
