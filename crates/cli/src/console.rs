@@ -1,6 +1,8 @@
 //! Output to stderr: errors, warnings, notes and progress bars.
 
 use std::io::{IsTerminal, Write, stderr, stdout};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread;
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -9,6 +11,7 @@ use crate::args::{ColorChoice, Global};
 use crate::failure::Failure;
 
 /// Verbosity and colour of messages.
+#[derive(Clone)]
 pub struct Console {
     /// True if diagnostics and errors are coloured.
     pub color: bool,
@@ -76,13 +79,16 @@ impl Console {
     }
 
     /// A progress bar for work that takes more than half a second, on a terminal and without `-q`.
+    /// Until the first report, as while a driver compiles a shader, it shows the time so far.
     pub fn progress(&self, what: &str) -> Progress {
-        let shown = !self.quiet && stderr().is_terminal();
         let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden());
-        let style = ProgressStyle::with_template("{prefix} {wide_bar} {percent}% {eta}");
+        let style = ProgressStyle::with_template("{prefix}: preparing, {elapsed} so far");
         bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
         bar.set_prefix(what.to_owned());
-        Progress { bar, shown }
+        if !self.quiet && stderr().is_terminal() {
+            Progress::show_later(bar.clone());
+        }
+        Progress { bar, reported: AtomicBool::new(false) }
     }
 }
 
@@ -100,19 +106,40 @@ fn colored(choice: ColorChoice, stream: &impl IsTerminal) -> bool {
 /// A progress bar that appears after [`Self::DELAY`].
 pub struct Progress {
     bar: ProgressBar,
-    shown: bool,
+    reported: AtomicBool,
 }
 
 impl Progress {
     const DELAY: Duration = Duration::from_millis(500);
+    /// How often the time is drawn.
+    const TICK: Duration = Duration::from_millis(250);
+
+    /// Draws the bar from a thread, because the work may not report for minutes.
+    fn show_later(bar: ProgressBar) {
+        let show = move || {
+            thread::sleep(Self::DELAY);
+            if !bar.is_finished() {
+                bar.set_draw_target(ProgressDrawTarget::stderr());
+                bar.enable_steady_tick(Self::TICK);
+            }
+        };
+        // Without a thread there is no bar.
+        let _ = thread::Builder::new().name("progress".to_owned()).spawn(show);
+    }
 
     /// Shows that `done` of `total` units of work are done.
     pub fn set(&self, done: u64, total: u64) {
-        if self.shown && self.bar.is_hidden() && self.bar.elapsed() > Self::DELAY {
-            self.bar.set_draw_target(ProgressDrawTarget::stderr());
+        if !self.reported.swap(true, Ordering::Relaxed) {
+            let style = ProgressStyle::with_template("{prefix} {wide_bar} {percent}% {eta}");
+            self.bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
         }
         self.bar.set_length(total);
         self.bar.set_position(done);
+    }
+
+    /// Begins another part of the work.
+    pub fn rename(&self, what: &str) {
+        self.bar.set_prefix(what.to_owned());
     }
 }
 

@@ -2,6 +2,9 @@
 
 use std::process::ExitCode;
 
+/// The exit status of a process that Ctrl-C ended.
+pub const INTERRUPTED: u8 = 130;
+
 /// Why a command failed. Ordered by exit code, so that the worst of several is the greatest.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Failure {
@@ -22,7 +25,7 @@ impl Failure {
             Self::Scene => ExitCode::from(1),
             Self::Call(_) => ExitCode::from(2),
             Self::Machine(_) => ExitCode::from(3),
-            Self::Interrupted(_) => ExitCode::from(130),
+            Self::Interrupted(_) => ExitCode::from(INTERRUPTED),
         }
     }
 }

@@ -2,8 +2,9 @@
 
 use std::io::{ErrorKind, Write, stdout};
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use sdfc_files::{check_writable, write};
+use sdfc_files::{Replacement, check_writable, write, write_unless_changed};
 use serde::Serialize;
 
 use crate::failure::Failure;
@@ -35,6 +36,24 @@ impl Output {
         }
     }
 
+    /// Writes the new contents of a file that has been read, unless it has been changed since.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::write`]; the file has been changed.
+    pub fn write_unless_changed(&self, before: &[u8], after: &[u8]) -> Result<(), Failure> {
+        let Self::File(path) = self else { return self.write(after) };
+        let _writing = writing();
+        match write_unless_changed(path, before, after) {
+            Ok(true) => Ok(()),
+            Ok(false) => Err(Failure::Machine(format!(
+                "{}: another program has just changed the file; try again",
+                path.display()
+            ))),
+            Err(error) => Err(cannot_write(path, &error)),
+        }
+    }
+
     /// Writes `bytes`.
     ///
     /// # Errors
@@ -43,8 +62,77 @@ impl Output {
     pub fn write(&self, bytes: &[u8]) -> Result<(), Failure> {
         match self {
             Self::Stdout => to_stdout(bytes),
-            Self::File(path) => write(path, bytes).map_err(|e| cannot_write(path, &e)),
+            Self::File(path) => {
+                let _writing = writing();
+                write(path, bytes).map_err(|e| cannot_write(path, &e))
+            }
         }
+    }
+}
+
+/// Held while a file is written.
+static WRITING: Mutex<()> = Mutex::new(());
+
+fn writing() -> MutexGuard<'static, ()> {
+    WRITING.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Runs `act` while no file is being written.
+pub fn while_nothing_is_written(act: impl FnOnce()) {
+    let _writing = writing();
+    act();
+}
+
+/// A file that is written part by part, and gets its name when it is finished.
+pub struct PartialFile {
+    path: PathBuf,
+    file: Replacement,
+    failure: Option<Failure>,
+}
+
+impl PartialFile {
+    /// Begins a file.
+    ///
+    /// # Errors
+    ///
+    /// As [`Output::check`].
+    pub fn begin(path: &Path) -> Result<Self, Failure> {
+        let file = Replacement::begin(path).map_err(|e| cannot_write(path, &e))?;
+        Ok(Self { path: path.to_owned(), file, failure: None })
+    }
+
+    /// Returns why a part was not written, also if the writer ignored the error.
+    pub fn failure(&mut self) -> Option<Failure> {
+        self.failure.take()
+    }
+
+    /// Gives the file its name.
+    ///
+    /// # Errors
+    ///
+    /// The disk is full, now or when a part was written.
+    pub fn finish(self) -> Result<(), Failure> {
+        let _writing = writing();
+        let finish = || self.file.finish().map_err(|e| cannot_write(&self.path, &e));
+        self.failure.map_or_else(finish, Err)
+    }
+
+    fn noted<T>(&mut self, written: std::io::Result<T>) -> std::io::Result<T> {
+        written.inspect_err(|e| {
+            self.failure.get_or_insert_with(|| cannot_write(&self.path, e));
+        })
+    }
+}
+
+impl Write for PartialFile {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        let written = self.file.write(bytes);
+        self.noted(written)
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        let flushed = self.file.flush();
+        self.noted(flushed)
     }
 }
 
@@ -117,7 +205,23 @@ pub fn json(value: &impl Serialize) -> Result<Vec<u8>, Failure> {
 }
 
 fn cannot_write(path: &Path, error: &std::io::Error) -> Failure {
-    Failure::Machine(format!("cannot write {}: {error}", path.display()))
+    Failure::Machine(format!("cannot write {}: {error}{}", path.display(), advice(error)))
+}
+
+/// Says what to do about a file that cannot be written.
+fn advice(error: &std::io::Error) -> &'static str {
+    #[allow(clippy::wildcard_enum_match_arm, reason = "other errors say what they are")]
+    match error.kind() {
+        ErrorKind::StorageFull | ErrorKind::QuotaExceeded | ErrorKind::FileTooLarge => {
+            "; free space, or write to another disk"
+        }
+        ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem => {
+            "; choose a folder that you may write to"
+        }
+        ErrorKind::NotFound | ErrorKind::NotADirectory => "; create its folder, or choose another",
+        ErrorKind::IsADirectory => "; add the name of a file",
+        _ => "",
+    }
 }
 
 /// Writes to stdout. A closed pipe is not an error: the reader has seen enough.
@@ -125,7 +229,7 @@ pub fn to_stdout(bytes: &[u8]) -> Result<(), Failure> {
     let mut out = stdout().lock();
     match out.write_all(bytes).and_then(|()| out.flush()) {
         Err(e) if e.kind() != ErrorKind::BrokenPipe => {
-            Err(Failure::Machine(format!("cannot write to stdout: {e}")))
+            Err(Failure::Machine(format!("cannot write to stdout: {e}{}", advice(&e))))
         }
         _ => Ok(()),
     }

@@ -1,5 +1,5 @@
 //! Bad input and failures of the machine give a clear error, the right exit status, no panic and no
-//! partial output. `device.rs` tests lost devices.
+//! partial output. `device.rs` tests lost devices, and `fault_injection.rs` faults of disk and memory.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -214,36 +214,12 @@ fn a_full_disk_is_reported() {
     }
 }
 
-/// The disk fills up when a part of the file is written.
-#[test]
-#[cfg(target_os = "linux")]
-fn a_disk_that_fills_up_leaves_no_partial_file() {
-    let folder = folder(&[("a.sdf", BALL)]);
-    for args in [
-        "render a.sdf -o a.png --backend cpu --size 160x100",
-        "render a.sdf -o a.gif --backend cpu --size 160x100 --frames 0..3",
-        "render a.sdf -o a.png --depth z.exr --backend cpu --size 160x100",
-        "compile a.sdf -o a.wgsl --emit render",
-    ] {
-        // Files written by this shell and its children can have at most one block of 512 bytes.
-        let output = shell_with(&folder, "trap '' XFSZ; ulimit -f 1", args);
-        assert_eq!(output.status.code(), Some(3), "{args}: {}", said(&output));
-        assert!(said(&output).contains("cannot write a."), "{args}: {}", said(&output));
-        assert_eq!(names(folder.path()), ["a.sdf"], "{args}");
-    }
-}
-
 /// Runs the program by the shell, which splits the arguments and redirects.
 #[cfg(target_os = "linux")]
 fn shell(folder: &tempfile::TempDir, args: &str) -> std::process::Output {
-    shell_with(folder, ":", args)
-}
-
-#[cfg(target_os = "linux")]
-fn shell_with(folder: &tempfile::TempDir, before: &str, args: &str) -> std::process::Output {
     let binary = env!("CARGO_BIN_EXE_sdfc");
     std::process::Command::new("sh")
-        .args(["-c", &format!("{before}; exec '{binary}' {args}")])
+        .args(["-c", &format!("exec '{binary}' {args}")])
         .current_dir(folder.path())
         .output()
         .unwrap()

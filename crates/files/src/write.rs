@@ -1,5 +1,6 @@
 //! Writes files atomically.
 
+use std::fs::File;
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
@@ -15,17 +16,87 @@ use tempfile::NamedTempFile;
 /// The folder is missing or not writable, the path is a folder, or the disk is full. An existing
 /// file then stays as it was.
 pub fn write(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
-    if is_device(path) {
-        return std::fs::OpenOptions::new().write(true).open(path)?.write_all(bytes);
-    }
-    let mut file = temporary(path)?;
+    let mut file = Replacement::begin(path)?;
     file.write_all(bytes)?;
-    if let Ok(before) = std::fs::metadata(path) {
-        file.as_file().set_permissions(before.permissions())?;
+    file.finish()
+}
+
+/// Replaces a file as [`write()`] does, if it still has the contents that the caller has read.
+/// Returns false, and changes nothing, if another program has changed it since.
+///
+/// # Errors
+///
+/// As [`write()`]; the file cannot be read.
+pub fn write_unless_changed(path: &Path, before: &[u8], after: &[u8]) -> std::io::Result<bool> {
+    let mut file = Replacement::begin(path)?;
+    file.write_all(after)?;
+    // As late as can be: an editor may save the file at any time.
+    if std::fs::read(path)? != before {
+        return Ok(false);
     }
-    file.as_file().sync_all()?;
-    file.persist(target(path)).map_err(|error| error.error)?;
-    Ok(())
+    file.finish()?;
+    Ok(true)
+}
+
+/// A file that is written part by part. It gets its name by [`Self::finish`]; dropped before, it is
+/// deleted, and an existing file stays as it was.
+#[derive(Debug)]
+pub struct Replacement {
+    path: PathBuf,
+    to: Destination,
+}
+
+#[derive(Debug)]
+enum Destination {
+    Temporary(NamedTempFile),
+    Device(File),
+}
+
+impl Replacement {
+    /// Begins to replace a file, as [`write()`] does.
+    ///
+    /// # Errors
+    ///
+    /// The folder is missing or not writable, or the path is a folder.
+    pub fn begin(path: &Path) -> std::io::Result<Self> {
+        let to = match is_device(path) {
+            true => Destination::Device(File::options().write(true).open(path)?),
+            false => Destination::Temporary(temporary(path)?),
+        };
+        Ok(Self { path: path.to_owned(), to })
+    }
+
+    /// Gives the file its name.
+    ///
+    /// # Errors
+    ///
+    /// The disk is full, or the path has become a folder.
+    pub fn finish(self) -> std::io::Result<()> {
+        let Destination::Temporary(file) = self.to else { return Ok(()) };
+        if let Ok(before) = std::fs::metadata(&self.path) {
+            file.as_file().set_permissions(before.permissions())?;
+        }
+        file.as_file().sync_all()?;
+        file.persist(target(&self.path)).map_err(|error| error.error)?;
+        Ok(())
+    }
+
+    fn file(&mut self) -> &mut File {
+        match &mut self.to {
+            Destination::Temporary(file) => file.as_file_mut(),
+            Destination::Device(file) => file,
+        }
+    }
+}
+
+impl Write for Replacement {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        self.file().write(bytes)
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        self.file().flush()
+    }
 }
 
 /// Checks that [`write()`] would succeed, before a long computation.
@@ -85,5 +156,29 @@ mod tests {
         assert!(std::fs::symlink_metadata(&link).unwrap().is_symlink());
         assert_eq!(std::fs::metadata(&file).unwrap().permissions().mode() & 0o777, 0o640);
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 2);
+    }
+
+    #[test]
+    fn a_file_without_its_end_has_no_name() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.gif");
+        std::fs::write(&path, "old").unwrap();
+        let mut file = Replacement::begin(&path).unwrap();
+        file.write_all(b"half").unwrap();
+        assert_eq!(std::fs::read(&path).unwrap(), b"old");
+        drop(file);
+        assert_eq!(std::fs::read(&path).unwrap(), b"old");
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn a_changed_file_is_not_replaced() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.sdf");
+        std::fs::write(&path, "saved by an editor").unwrap();
+        assert!(!write_unless_changed(&path, b"read", b"formatted").unwrap());
+        assert_eq!(std::fs::read(&path).unwrap(), b"saved by an editor");
+        assert!(write_unless_changed(&path, b"saved by an editor", b"formatted").unwrap());
+        assert_eq!(std::fs::read(&path).unwrap(), b"formatted");
     }
 }

@@ -97,7 +97,9 @@ pub fn bake(
     let local = LocalField::new(field.distance(), frame);
     let prober = local.prober();
     let [width, height, depth] = grid.shape;
-    grid.values = vec![0.0; width * height * depth];
+    let count = width * height * depth;
+    grid.values.try_reserve_exact(count).map_err(|_| MeshError::OutOfMemory(count))?;
+    grid.values.resize(count, 0.0);
     for (z, layer) in grid.values.chunks_exact_mut(width * height).enumerate() {
         let position = |x: usize, y: usize| position(grid.origin, grid.spacing, [x, y, z]);
         layer.par_chunks_exact_mut(width).enumerate().for_each_init(

@@ -119,6 +119,9 @@ pub enum MeshError {
         /// The greatest number in total.
         most: usize,
     },
+    /// The machine has no memory for so many samples.
+    #[error("out of memory for a grid of {0} samples; lower the resolution")]
+    OutOfMemory(usize),
     /// The plane of a section meets no inside.
     #[error(
         "the plane at {at} meets no inside of the scene, whose bounds reach from {from} to {to} \
@@ -154,6 +157,7 @@ impl MeshError {
             | Self::NotFlat(_)
             | Self::Unbounded { .. }
             | Self::Open
+            | Self::OutOfMemory(_)
             | Self::Cancelled => false,
         }
     }

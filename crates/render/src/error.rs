@@ -25,13 +25,16 @@ pub enum RenderError {
     #[error("the adapter gave no device: {0}")]
     NoDevice(String),
     /// The device was lost while drawing; contains the driver's message.
-    #[error("the device was lost while drawing: {0}")]
+    #[error(
+        "the device was lost while drawing: {0}; draw a smaller picture or fewer parts, update the \
+         driver, or draw on the CPU"
+    )]
     DeviceLost(String),
     /// The device did not answer for this many seconds.
-    #[error("the device did not finish a tile within {0} s")]
+    #[error("the device did not finish a tile within {0} s; draw fewer parts, or draw on the CPU")]
     Stalled(u64),
     /// Memory ran out, on the device or on the host; contains what it was for.
-    #[error("out of memory for {0}")]
+    #[error("out of memory for {0}; draw a smaller picture, or a region of it at a time")]
     OutOfMemory(String),
     /// The device refused the shader or a call: a bug of the compiler, not of the scene.
     #[error("the device refused the shader: {0}")]
@@ -109,6 +112,12 @@ pub enum RenderError {
 }
 
 impl RenderError {
+    /// Returns true if the device failed in the middle of its work, as after a tile that took longer
+    /// than the system allows. Another device may do the work in smaller tiles.
+    pub fn is_device_failure(&self) -> bool {
+        matches!(self, Self::DeviceLost(_) | Self::Stalled(_))
+    }
+
     /// Returns true if the machine is the cause, not the scene and not the call.
     pub fn is_machine(&self) -> bool {
         match self {

@@ -84,7 +84,9 @@ impl Error {
             | Self::Evaluate(_)
             | Self::View(_) => false,
             #[cfg(feature = "mesh")]
-            Self::Mesh(_) | Self::UnknownSolid { .. } | Self::PlaneOfRegions => false,
+            Self::Mesh(error) => matches!(error, sdfc_mesh::MeshError::OutOfMemory(_)),
+            #[cfg(feature = "mesh")]
+            Self::UnknownSolid { .. } | Self::PlaneOfRegions => false,
         }
     }
 

@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 use std::str::FromStr;
+use std::sync::OnceLock;
 use std::time::Instant;
 
 use sdfc_analyze::prepare_with;
@@ -12,7 +13,7 @@ use sdfc_march::Method;
 use sdfc_render::{
     AdapterInfo, CompileTimes, CpuScene, Frame, FrameTimes, Gpu, Image, LeafEvaluations,
     OnProgress, Pipeline, PixelCounts, Pose, Progress, RenderError, RenderOptions, Stats, Tile,
-    View, Why, milliseconds_since, sample_offsets, uniform_values,
+    TileSize, View, Why, milliseconds_since, sample_offsets, uniform_values,
 };
 
 use crate::error::Error;
@@ -205,6 +206,11 @@ pub struct Picture {
     pub unproven: Option<String>,
 }
 
+/// The time of a tile after the device was lost: a fourth of the usual time.
+const SMALL_TILE_MS: f64 = 15.0;
+/// What a picture says if the device was lost once.
+const AGAIN: &str = "the device was lost once, and drew again in smaller tiles";
+
 impl Scene {
     /// Draws the scene. `progress` is called repeatedly and may cancel.
     ///
@@ -276,7 +282,12 @@ impl Scene {
         let (engine, compile, note) = match gpu {
             Ok(gpu) => {
                 let parallel = options.pose.map(|pose| pose.parallel);
-                let (engine, compile) = self.pipeline(&gpu, &program, method, parallel)?;
+                let make = |gpu: &Gpu| self.pipeline(gpu, &program, method, parallel);
+                let (engine, compile) = match make(&gpu) {
+                    // Once more: the device may have been lost to another program's fault.
+                    Err(Error::Render(error)) if error.is_device_failure() => make(&Gpu::new()?)?,
+                    made => made?,
+                };
                 (engine, compile, None)
             }
             Err(note) => {
@@ -295,6 +306,7 @@ impl Scene {
             scene: self,
             program,
             engine,
+            reopened: OnceLock::new(),
             method,
             why,
             size,
@@ -370,6 +382,8 @@ pub struct Painter<'s> {
     /// The scene's program, with the functions that the method needs.
     program: Cow<'s, Program>,
     engine: Engine,
+    /// The engine after the device was lost.
+    reopened: OnceLock<Engine>,
     method: Method,
     /// Why this method draws, if the field is uncertified.
     why: Option<String>,
@@ -409,7 +423,7 @@ impl Painter<'_> {
         let adapter = self.adapter();
         let mut stats =
             Stats::new(&frame, frame_ms, adapter, self.method_name(), self.compile.clone());
-        match &self.engine {
+        match self.engine() {
             Engine::Gpu(pipeline) if pipeline.leaves_out() => {
                 let why = "rays visit the parts that can matter to them, which `sdfc bench` counts";
                 stats.leaf_evals_per_pixel = LeafEvaluations::unknown(why);
@@ -421,7 +435,10 @@ impl Painter<'_> {
         stats.why.extend(self.why.clone().map(|why| ("method", why)));
         let first = scene.times.front + scene.times.analyze + milliseconds_since(self.start);
         stats.set_first_picture(first - frame_ms.median * f64::from(repetitions - 1));
-        Ok(Picture { image: frame.image, stats, note: self.note.clone(), unproven })
+        let again = self.reopened.get().map(|_| AGAIN.to_owned());
+        let notes: Vec<String> = self.note.iter().cloned().chain(again).collect();
+        let note = (!notes.is_empty()).then(|| notes.join("; "));
+        Ok(Picture { image: frame.image, stats, note, unproven })
     }
 
     /// Changes the size and the camera of the following pictures, without compiling again.
@@ -483,7 +500,7 @@ impl Painter<'_> {
 
     /// The GPU that draws; `None` for the CPU.
     pub fn adapter(&self) -> Option<&AdapterInfo> {
-        match &self.engine {
+        match self.engine() {
             Engine::Gpu(pipeline) => Some(pipeline.gpu().info()),
             Engine::Cpu(_) => None,
         }
@@ -519,14 +536,50 @@ impl Painter<'_> {
         Ok(mean)
     }
 
+    /// The engine that draws the next picture.
+    fn engine(&self) -> &Engine {
+        self.reopened.get().unwrap_or(&self.engine)
+    }
+
+    /// Draws one frame. If the device fails, another one draws it in smaller tiles; if that fails
+    /// too, the failure is the result.
     fn one(
         &self,
         view: &View,
         values: &FrameValues,
         progress: &mut OnProgress<'_>,
     ) -> Result<Frame, RenderError> {
-        let options = RenderOptions { region: self.region, ..RenderOptions::default() };
-        match &self.engine {
+        let drawn = self.drawn(view, values, progress);
+        match drawn {
+            Err(error) if error.is_device_failure() && self.reopened.get().is_none() => {
+                let engine = self.reopen().ok_or(error)?;
+                self.reopened.get_or_init(|| engine);
+                self.drawn(view, values, progress)
+            }
+            drawn => drawn,
+        }
+    }
+
+    /// Opens the device anew and compiles the scene for it.
+    fn reopen(&self) -> Option<Engine> {
+        let gpu = Gpu::new().ok()?;
+        let parallel = self.pose.map(|pose| pose.parallel);
+        let made = self.scene.pipeline(&gpu, &self.program, self.method, parallel);
+        made.ok().map(|(engine, _)| engine)
+    }
+
+    fn drawn(
+        &self,
+        view: &View,
+        values: &FrameValues,
+        progress: &mut OnProgress<'_>,
+    ) -> Result<Frame, RenderError> {
+        let tile_size = match self.reopened.get() {
+            Some(_) => TileSize::Adaptive { milliseconds: SMALL_TILE_MS },
+            None => TileSize::default(),
+        };
+        let options = RenderOptions { region: self.region, tile_size };
+        match self.engine() {
             Engine::Gpu(pipeline) => {
                 let uniforms = uniform_values(&self.program, values);
                 pipeline.render(view, &uniforms, &options, progress)

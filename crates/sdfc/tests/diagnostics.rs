@@ -58,7 +58,7 @@ fn no_clause_of_the_library_is_refuted() {
         let compiled = Compiler::new().compile(&entry.name, &entry.example);
         let scene = compiled.unwrap_or_else(|errors| panic!("{errors}"));
         let shapes: Vec<_> = scene.graph().graph.shape_ids().collect();
-        let refuted = sdfc_analyze::refute(scene.graph(), &shapes);
+        let refuted = sdfc_analyze::refute(scene.graph(), &shapes, u64::MAX);
         assert!(refuted.is_empty(), "{}: {refuted:?}", entry.name);
     }
 }

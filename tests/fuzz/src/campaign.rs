@@ -1,5 +1,6 @@
-//! Runs programs through oracles for some time.
+//! Judges one generated program after the other.
 
+use std::collections::HashMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
@@ -10,15 +11,14 @@ use sdfc::Compiler;
 use crate::catalogue::Catalogue;
 use crate::oracles::{Finding, Oracle, Outcome, Subject, Verdict};
 use crate::repair::NAME;
+use crate::table::{Answer, Found, Judged, Table};
 use crate::tree::Program;
 use crate::{generate, repair, shrink};
 
-/// An oracle that takes longer has found a fault.
-const LIMIT: Duration = Duration::from_secs(60);
 /// The time for shrinking a finding, and one that looks like many before.
 const SHRINKING: [Duration; 2] = [Duration::from_secs(60), Duration::from_secs(5)];
 /// So many findings of one kind get the longer time.
-const WORTH_SHRINKING: usize = 3;
+const WORTH_SHRINKING: u32 = 3;
 /// The most programs that are tried while one is shrunk.
 const TRIES: usize = 2000;
 
@@ -29,53 +29,12 @@ pub struct Limits {
     pub time: Duration,
     /// The number of programs, if the time allows for them.
     pub programs: u64,
-    /// The seed of the first program. The next programs have the next seeds.
+    /// The seed of the first program.
     pub seed: u64,
-}
-
-/// The counts of a campaign.
-#[derive(Clone, Debug, Default)]
-pub struct Table {
-    /// The programs that were generated.
-    pub programs: u64,
-    /// Those that the checker accepts.
-    pub valid: u64,
-    /// The parts of accepted programs.
-    pub parts: usize,
-    /// The bytes of all programs.
-    pub bytes: usize,
-    /// One row for each oracle.
-    pub rows: Vec<Row>,
-    /// The faults, in the order in which they were found.
-    pub found: Vec<Found>,
-    /// The time it took.
-    pub time: Duration,
-}
-
-/// The counts of one oracle.
-#[derive(Clone, Debug)]
-pub struct Row {
-    /// The oracle's name.
-    pub oracle: &'static str,
-    /// The programs of which the statement holds, or does not.
-    pub run: u64,
-    /// The programs that the statement is not about.
-    pub left_out: u64,
-    /// The programs of which it does not hold.
-    pub findings: u64,
-}
-
-/// A fault, with a program as small as could be.
-#[derive(Clone, Debug)]
-pub struct Found {
-    /// The oracle's name, or `checker` for a program that is not accepted.
-    pub oracle: &'static str,
-    /// The seed of the program.
-    pub seed: u64,
-    /// The fault of the small program.
-    pub finding: Finding,
-    /// The small program.
-    pub text: String,
+    /// The difference between the seeds of two programs.
+    pub stride: u64,
+    /// An oracle that takes longer has found a fault.
+    pub patience: Duration,
 }
 
 /// An event of a campaign.
@@ -83,135 +42,151 @@ pub struct Found {
 pub enum Event<'e> {
     /// A program with this seed and text is about to be judged.
     Program(u64, &'e str),
-    /// A fault was found.
-    Found(&'e Found),
+    /// It has been judged.
+    Judged(&'e Judged),
 }
 
-impl Table {
-    /// A table without counts, with a row for each oracle.
-    pub(crate) fn new(oracles: impl Iterator<Item = &'static str>) -> Self {
-        let rows = oracles.map(|oracle| Row { oracle, run: 0, left_out: 0, findings: 0 });
-        Self { rows: rows.collect(), ..Self::default() }
-    }
-}
+/// A callback for events.
+pub(crate) type OnEvent<'e> = dyn FnMut(&Event<'_>) + 'e;
 
 /// Runs a campaign over generated programs. The oracles judge each.
+///
+/// It ends early after an oracle that did not end in time, because its thread goes on; a new
+/// process can go on with the next seed.
 ///
 /// # Errors
 ///
 /// The reference has an entry that the generator does not understand.
-pub fn run(
-    limits: Limits,
-    oracles: &[Oracle],
-    on: &mut dyn FnMut(&Event<'_>),
-) -> Result<Table, String> {
+pub fn run(limits: Limits, oracles: &[Oracle], on: &mut OnEvent<'_>) -> Result<Table, String> {
     let catalogue = Arc::new(Catalogue::read()?);
+    let table = Table::new(oracles.iter().map(|oracle| (oracle.name, oracle.summary)));
+    let mut judge = Judge {
+        catalogue,
+        oracles: oracles.to_vec(),
+        patience: limits.patience,
+        seen: HashMap::new(),
+    };
+    Ok(in_turn(limits, table, on, &mut |seed, on| judge.judged(seed, on)))
+}
+
+/// Judges seed after seed while the limits allow it, and adds up the results.
+pub(crate) fn in_turn(
+    limits: Limits,
+    mut table: Table,
+    on: &mut OnEvent<'_>,
+    judge: &mut dyn FnMut(u64, &mut OnEvent<'_>) -> Judged,
+) -> Table {
     let start = Instant::now();
-    let mut table = Table::new(oracles.iter().map(|oracle| oracle.name));
-    for seed in (limits.seed..).take(limits.programs as usize) {
-        if start.elapsed() >= limits.time {
+    let mut seed = limits.seed;
+    while table.programs < limits.programs && start.elapsed() < limits.time {
+        let judged = judge(seed, on);
+        on(&Event::Judged(&judged));
+        let is_slow = judged.found.iter().any(|found| found.finding.kind == SLOW);
+        table.add(judged);
+        if is_slow {
             break;
         }
-        table.programs += 1;
-        let catalogue = Arc::clone(&catalogue);
-        let made = within_limit(move || repair(generate(&catalogue, seed)));
-        let program = match made {
+        seed = seed.saturating_add(limits.stride);
+    }
+    table.time = start.elapsed();
+    table
+}
+
+/// Judges programs, and knows the kinds of findings so far.
+struct Judge {
+    catalogue: Arc<Catalogue>,
+    oracles: Vec<Oracle>,
+    patience: Duration,
+    seen: HashMap<(&'static str, String), u32>,
+}
+
+impl Judge {
+    fn judged(&mut self, seed: u64, on: &mut OnEvent<'_>) -> Judged {
+        let catalogue = Arc::clone(&self.catalogue);
+        let mut judged = Judged { seed, ..Judged::default() };
+        let program = match within_limit(self.patience, move || repair(generate(&catalogue, seed)))
+        {
             Ok(Ok(accepted)) => accepted.program,
             Ok(Err((program, errors))) => {
                 let finding = Finding { kind: "not accepted".to_owned(), message: errors };
-                note(&mut table, "checker", seed, finding, program.text(), on);
-                continue;
+                judged.found.push(found("checker", seed, finding, program.text()));
+                return judged;
             }
             Err(finding) => {
-                note(&mut table, "checker", seed, finding, String::new(), on);
-                continue;
+                judged.found.push(found("checker", seed, finding, String::new()));
+                return judged;
             }
         };
-        table.valid += 1;
-        table.parts += program.size();
-        table.bytes += program.text().len();
+        judged.valid = true;
+        (judged.parts, judged.bytes) = (program.size(), program.text().len());
         on(&Event::Program(seed, &program.text()));
-        judge(&mut table, oracles, seed, &program, on);
+        self.ask(&program, &mut judged);
+        judged
     }
-    table.time = start.elapsed();
-    Ok(table)
-}
 
-/// Asks all oracles about one program, and shrinks it for each that finds a fault.
-fn judge(
-    table: &mut Table,
-    oracles: &[Oracle],
-    seed: u64,
-    program: &Program,
-    on: &mut dyn FnMut(&Event<'_>),
-) {
-    let answers = asked(program.text(), oracles.to_vec());
-    for (row, oracle) in oracles.iter().enumerate() {
-        let outcome = next(&answers);
-        let Some(outcome) = outcome else { return };
-        let counts = &mut table.rows[row];
-        match outcome {
-            Ok(Verdict::LeftOut) => counts.left_out += 1,
-            Ok(Verdict::Holds) => counts.run += 1,
-            Err(finding) => {
-                counts.run += 1;
-                counts.findings += 1;
+    /// Asks all oracles about a program, and shrinks it for each that finds a fault.
+    fn ask(&mut self, program: &Program, judged: &mut Judged) {
+        let answers = asked(program.text(), self.oracles.clone());
+        let mut start = Instant::now();
+        for oracle in self.oracles.clone() {
+            let Some(outcome) = next(&answers, self.patience) else { return };
+            let milliseconds = start.elapsed().as_millis() as u64;
+            let answer = match &outcome {
+                Ok(Verdict::LeftOut) => Answer::LeftOut,
+                Ok(Verdict::Holds) => Answer::Holds,
+                Err(_) => Answer::Fails,
+            };
+            judged.answers.push((answer, milliseconds));
+            if let Err(finding) = outcome {
                 let is_slow = finding.kind == SLOW;
-                let (program, finding) = smallest(table, oracle, program, finding);
-                note(table, oracle.name, seed, finding, program.text(), on);
+                let (program, finding) = self.smallest(&oracle, program, finding);
+                judged.found.push(found(oracle.name, judged.seed, finding, program.text()));
                 if is_slow {
                     return;
                 }
             }
+            start = Instant::now();
         }
     }
-}
 
-pub(crate) fn note(
-    table: &mut Table,
-    oracle: &'static str,
-    seed: u64,
-    finding: Finding,
-    text: String,
-    on: &mut dyn FnMut(&Event<'_>),
-) {
-    let found = Found { oracle, seed, finding, text };
-    on(&Event::Found(&found));
-    table.found.push(found);
-}
-
-/// Shrinks a program that has a fault, for a limited time.
-fn smallest(
-    table: &Table,
-    oracle: &Oracle,
-    program: &Program,
-    finding: Finding,
-) -> (Program, Finding) {
-    if finding.kind == SLOW {
-        return (program.clone(), finding);
-    }
-    let alike = |found: &&Found| found.oracle == oracle.name && found.finding.kind == finding.kind;
-    let many = table.found.iter().filter(alike).count() >= WORTH_SHRINKING;
-    let end = Instant::now() + SHRINKING[usize::from(many)];
-    let mut smallest = finding.clone();
-    let program = shrink(program, TRIES, &mut |program| {
-        if Instant::now() >= end {
-            return false;
+    /// Shrinks a program that has a fault, for a limited time.
+    fn smallest(
+        &mut self,
+        oracle: &Oracle,
+        program: &Program,
+        finding: Finding,
+    ) -> (Program, Finding) {
+        if finding.kind == SLOW {
+            return (program.clone(), finding);
         }
-        let answers = asked(program.text(), vec![*oracle]);
-        match next(&answers) {
-            Some(Err(found)) if found.kind == finding.kind => {
-                smallest = found;
-                true
+        let seen = self.seen.entry((oracle.name, finding.kind.clone())).or_default();
+        *seen += 1;
+        let end = Instant::now() + SHRINKING[usize::from(*seen > WORTH_SHRINKING)];
+        let mut smallest = finding.clone();
+        let patience = self.patience;
+        let program = shrink(program, TRIES, &mut |program| {
+            if Instant::now() >= end {
+                return false;
             }
-            Some(_) | None => false,
-        }
-    });
-    (program, smallest)
+            let answers = asked(program.text(), vec![*oracle]);
+            match next(&answers, patience) {
+                Some(Err(found)) if found.kind == finding.kind => {
+                    smallest = found;
+                    true
+                }
+                Some(_) | None => false,
+            }
+        });
+        (program, smallest)
+    }
+}
+
+pub(crate) fn found(oracle: &str, seed: u64, finding: Finding, text: String) -> Found {
+    Found { oracle: oracle.to_owned(), seed, finding, text }
 }
 
 /// The kind of the finding that an oracle does not end in time.
-pub(crate) const SLOW: &str = "slow";
+pub const SLOW: &str = "slow";
 /// The kind of the finding that an oracle panics.
 const PANIC: &str = "panic";
 
@@ -239,16 +214,17 @@ fn answer(text: String, oracles: &[Oracle], sender: &Sender<Outcome>) {
 }
 
 /// Waits for the next answer. `None` if there are no more.
-fn next(answers: &Receiver<Outcome>) -> Option<Outcome> {
-    match answers.recv_timeout(LIMIT) {
+fn next(answers: &Receiver<Outcome>, patience: Duration) -> Option<Outcome> {
+    match answers.recv_timeout(patience) {
         Ok(outcome) => Some(outcome),
         Err(RecvTimeoutError::Disconnected) => None,
-        Err(RecvTimeoutError::Timeout) => Some(Err(slow())),
+        Err(RecvTimeoutError::Timeout) => Some(Err(slow(patience))),
     }
 }
 
 /// Calls a function on a thread of its own, with a limited time.
 pub(crate) fn within_limit<T: Send + 'static>(
+    patience: Duration,
     make: impl FnOnce() -> T + Send + 'static,
 ) -> Result<T, Finding> {
     let (sender, receiver) = channel();
@@ -257,11 +233,11 @@ pub(crate) fn within_limit<T: Send + 'static>(
         // Nobody waits for the result after the limit.
         let _ = sender.send(made.map_err(|panic| panicked(panic.as_ref())));
     });
-    receiver.recv_timeout(LIMIT).unwrap_or_else(|_| Err(slow()))
+    receiver.recv_timeout(patience).unwrap_or_else(|_| Err(slow(patience)))
 }
 
-fn slow() -> Finding {
-    let message = format!("not done after {} s", LIMIT.as_secs());
+fn slow(patience: Duration) -> Finding {
+    let message = format!("not done after {} s", patience.as_secs());
     Finding { kind: SLOW.to_owned(), message }
 }
 

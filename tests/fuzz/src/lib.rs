@@ -23,9 +23,11 @@ mod kernel;
 pub mod oracles;
 mod repair;
 mod shrink;
+pub mod table;
 pub mod texts;
 pub mod tree;
 pub mod types;
+pub mod workers;
 
 pub use generate::generate;
 pub use kernel::LEFT_OUT;

@@ -12,7 +12,10 @@ use sdfc_graph::{Expander, Graph, NodeId, Param, ShapeId, gradient};
 
 /// Budget of one shape's search, in scalar operations.
 const OPERATIONS: usize = 1_000_000;
-/// Limits of the number of boxes, whatever the budget.
+/// Budget of all searches of a scene, in scalar operations: some seconds. Shapes beyond it have no
+/// constant.
+pub(crate) const SCENE_OPERATIONS: usize = 1 << 28;
+/// Limits of the number of boxes, whatever the budget of the shape.
 const MAX_BOXES: usize = 2048;
 const MIN_BOXES: usize = 64;
 /// The search ends if the constant exceeds a slope that occurs by no more than this fraction.
@@ -43,12 +46,14 @@ impl Slope {
 }
 
 /// The slopes of a shape's formula within its bounds, for all values of the params. Returns `None`
-/// if the bounds or the slope are infinite, or the formula jumps.
+/// if the bounds or the slope are infinite, the formula jumps, or the search may need more
+/// operations than `budget`. What it uses is taken from that.
 pub(crate) fn steepest_within(
     graph: &mut Graph,
     shape: ShapeId,
     bounds: [NodeId; 2],
     params: &[Param],
+    budget: &mut usize,
 ) -> Option<Slope> {
     if graph.shape(shape).level > 0 {
         return None;
@@ -62,15 +67,22 @@ pub(crate) fn steepest_within(
     let tapes = [Tape::new(graph, &[field]).ok()?, Tape::new(graph, &[slope]).ok()?];
     let cost = tapes.iter().map(Tape::operations).fold(1, usize::saturating_add);
     let boxes = (OPERATIONS / cost).clamp(MIN_BOXES, MAX_BOXES);
+    let most = 1 + 2 * boxes + SAMPLES.pow(3);
+    if cost.saturating_mul(most) > *budget {
+        return None;
+    }
     let [field, slope] = &tapes;
     let mut search = Search {
         field: field.prepare_in(&ranges),
         slope: slope.prepare_in(&ranges),
         path: BranchPath::default(),
         axes: dim.point_type().width(),
+        evaluations: 0,
     };
-    let largest = search.run(region, boxes)?;
-    Some(Slope { largest, median: search.median(region) })
+    let largest = search.run(region, boxes);
+    let slope = largest.map(|largest| Slope { largest, median: search.median(region) });
+    *budget -= cost * search.evaluations.min(most);
+    slope
 }
 
 /// The smallest box that holds the bounds for all values of the params; `None` if it is empty or
@@ -116,6 +128,8 @@ struct Search<'t> {
     slope: Evaluator<'t, Interval>,
     path: BranchPath,
     axes: usize,
+    /// The number of boxes and points that were evaluated.
+    evaluations: usize,
 }
 
 impl Search<'_> {
@@ -146,6 +160,7 @@ impl Search<'_> {
             Interval::new(coordinate, coordinate)
         };
         let mut slopes = Vec::with_capacity(SAMPLES.pow(3));
+        self.evaluations += SAMPLES.pow(3);
         for i in 0..SAMPLES.pow(3) {
             let point =
                 [at(0, i % SAMPLES), at(1, i / SAMPLES % SAMPLES), at(2, i / SAMPLES.pow(2))];
@@ -158,6 +173,7 @@ impl Search<'_> {
     /// Evaluates the gradient on a box. The upper bound is infinite if the field may jump there.
     fn cell(&mut self, region: Region, reached: &mut f64) -> Cell {
         let at = region.map(|[lo, hi]| Interval::new(lo, hi));
+        self.evaluations += 1;
         self.path.clear();
         self.field.scalar_along(at, &mut self.path);
         if self.path.is_open() {

@@ -9,7 +9,7 @@ use sdfc_graph::eval::{FrameValues, Interval};
 use sdfc_graph::{Binary, Contract, Graph, Node, NodeId, Param, ShapeId, Stage, Ternary, Unary};
 
 use crate::certify::lipschitz::Slopes;
-use crate::certify::local_slope::steepest_within;
+use crate::certify::local_slope::{SCENE_OPERATIONS, steepest_within};
 use crate::certify::maps::Maps;
 use crate::certify::promise::{Promise, Sides, stated_sides};
 use crate::certify::reason::{Constant, Reason};
@@ -52,13 +52,16 @@ pub struct Qualities {
     of: FxHashMap<ShapeId, Quality>,
     params: Vec<Param>,
     ranges: FrameValues<Interval>,
+    /// The operations that searches for constants may still take.
+    budget: usize,
 }
 
 impl Qualities {
     /// Derives the qualities of `root` and of every shape below it, for all values of the params.
     pub fn of_scene(graph: &mut Graph, root: ShapeId, params: &[Param]) -> Self {
         let ranges = FrameValues::ranges(params);
-        let mut qualities = Self { of: FxHashMap::default(), params: params.to_vec(), ranges };
+        let (of, params) = (FxHashMap::default(), params.to_vec());
+        let mut qualities = Self { of, params, ranges, budget: SCENE_OPERATIONS };
         for shape in shapes_below(graph, root) {
             let quality = qualities.derive(graph, shape);
             qualities.of.insert(shape, quality);
@@ -131,7 +134,7 @@ impl Qualities {
         stated_sides(graph, contract, exact, bound)
     }
 
-    fn derive(&self, graph: &mut Graph, shape: ShapeId) -> Quality {
+    fn derive(&mut self, graph: &mut Graph, shape: ShapeId) -> Quality {
         let contract = graph.shape(shape).contract;
         let children = graph.shape(shape).children.clone();
         let stated = self.stated_sides(graph, &contract, &children);
@@ -188,7 +191,7 @@ impl Qualities {
     /// A constant by interval derivatives. Returns the constant, `false` since it does not hold
     /// everywhere, and the bounds within which it holds.
     fn within_bounds(
-        &self,
+        &mut self,
         graph: &mut Graph,
         shape: ShapeId,
         what: &'static str,
@@ -197,7 +200,7 @@ impl Qualities {
             Some(bounds) => bounds,
             None => sdfc_graph::bounds(graph, shape, &self.params),
         };
-        match steepest_within(graph, shape, bounds, &self.params) {
+        match steepest_within(graph, shape, bounds, &self.params, &mut self.budget) {
             Some(slope) if slope.is_uniform() => {
                 (Ok(graph.number(slope.largest)), false, Some(bounds))
             }

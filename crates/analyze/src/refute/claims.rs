@@ -6,7 +6,7 @@ use sdfc_graph::{
 };
 
 use crate::refute::frames::{ParamValues, axes, frames};
-use crate::refute::probe::Random;
+use crate::refute::probe::{Effort, Random};
 
 /// Number of pairs of points, in the bounds of each shape whose formula has the call.
 const PAIRS: usize = 2000;
@@ -34,11 +34,12 @@ pub struct LipschitzViolation {
 }
 
 /// Searches for two points that refute the annotation of a function, of which `value` is the
-/// result. Calls in loops, and in shapes whose arguments depend on a point, are skipped.
+/// result. It takes at most about so many scalar operations. Calls in loops, and in shapes whose arguments depend on a point, are skipped.
 pub fn refute_lipschitz(
     scene: &Scene,
     value: NodeId,
     claim: &LipschitzClaim,
+    operations: u64,
 ) -> Option<LipschitzViolation> {
     let graph = &scene.graph;
     if graph.levels(value) != 1 || graph.loops_around(value) > 0 {
@@ -58,13 +59,16 @@ pub fn refute_lipschitz(
     let tape = call_tape(graph, dim, value, &arguments)?;
     let mut bounds = Bounds::new(&scene.params);
     let corners: Vec<[NodeId; 2]> = shapes.iter().map(|&shape| bounds.of(graph, shape)).collect();
-    frames(&scene.params).into_iter().find_map(|(params, frame)| {
+    let frames = frames(&scene.params);
+    let effort = Effort(operations / (frames.len() * corners.len()).max(1) as u64);
+    frames.into_iter().find_map(|(params, frame)| {
         let constant = evaluate_frame(graph, &[constant], &frame).first()?[0];
         corners.iter().find_map(|corners| {
             let ends = evaluate_frame(graph, corners, &frame);
             let window = [ends.first()?, ends.get(1)?].map(|end| [end[0], end[1], end[2]]);
             let mut pairs = Pairs::new(&tape, &frame, window, axes(dim));
-            let (from, to, slope) = pairs.steeper(constant)?;
+            let count = effort.of(PAIRS, &tape);
+            let (from, to, slope) = pairs.steeper(constant, count)?;
             Some(LipschitzViolation { constant, slope, from, to, params })
         })
     })
@@ -121,8 +125,8 @@ impl<'t> Pairs<'t> {
     }
 
     /// Two points between which the slope exceeds `constant`, and the slope.
-    fn steeper(&mut self, constant: f64) -> Option<(Vec<f64>, Vec<f64>, f64)> {
-        (0..PAIRS).find_map(|pair| {
+    fn steeper(&mut self, constant: f64, count: usize) -> Option<(Vec<f64>, Vec<f64>, f64)> {
+        (0..count).find_map(|pair| {
             let fraction = [1.0, 1e-2, 1e-4][pair % 3];
             let (from, other) = (self.point(), self.point());
             let to = [0, 1, 2].map(|axis| from[axis] + fraction * (other[axis] - from[axis]));

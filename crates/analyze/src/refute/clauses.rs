@@ -14,11 +14,13 @@ use crate::certify::promise::Promise;
 use crate::certify::quality::{Qualities, Stated};
 use crate::refute::copies::{CopiesViolation, copies_violation};
 use crate::refute::frames::{ParamValues, frames};
-use crate::refute::probe::Probe;
+use crate::refute::probe::{Effort, Probe};
 use crate::refute::rays::{RayViolation, intersect_violation};
 
 /// Relative error that intervals along rays may have.
 const RAY_ROUNDING: f64 = 1e-8;
+/// Tests of a shape that share its operations: rays, copies, bounds, slopes and distances.
+const TESTS: usize = 5;
 
 /// A clause that does not hold, and the point that shows it.
 #[derive(Clone, Debug, PartialEq)]
@@ -65,23 +67,26 @@ pub enum Clause {
 }
 
 /// Searches for points at which clauses of the shapes fail, and returns at most one for each shape.
-/// The budget is about ten thousand evaluations for each shape. Shapes whose arguments depend on a
-/// point, and fields that do not expand, are skipped.
-pub fn refute(scene: &Scene, shapes: &[ShapeId]) -> Vec<Violation> {
+/// It takes about ten thousand evaluations for each shape, or fewer: `operations` is about how many
+/// scalar operations all of them may take. Shapes whose arguments depend on a point, and fields that
+/// do not expand, are skipped.
+pub fn refute(scene: &Scene, shapes: &[ShapeId], operations: u64) -> Vec<Violation> {
     let is_fixed = |&&shape: &&ShapeId| scene.graph.shape(shape).level == 0;
+    let tests = (TESTS * shapes.len() * frames(&scene.params).len()).max(1);
+    let effort = Effort(operations / tests as u64);
     let shapes = shapes.iter().filter(is_fixed);
-    shapes.filter_map(|&shape| violation(scene, shape)).collect()
+    shapes.filter_map(|&shape| violation(scene, shape, effort)).collect()
 }
 
 /// A violated clause of one shape.
-fn violation(scene: &Scene, shape: ShapeId) -> Option<Violation> {
+fn violation(scene: &Scene, shape: ShapeId, effort: Effort) -> Option<Violation> {
     let mut extract = scene.graph.extract(&[], &[shape]);
     let copy = extract.shape(shape)?;
     let (graph, params) = (&mut extract.graph, &scene.params[..]);
     let stated = Qualities::of_scene(graph, copy, params).stated(graph, copy);
-    let (fault, params) = intersect_fault(graph, params, copy)
-        .or_else(|| copies_fault(graph, params, copy))
-        .or_else(|| field_fault(graph, params, copy, &stated))?;
+    let (fault, params) = intersect_fault(graph, params, copy, effort)
+        .or_else(|| copies_fault(graph, params, copy, effort))
+        .or_else(|| field_fault(graph, params, copy, &stated, effort))?;
     Some(Violation { shape, clause: fault.clause, at: fault.at, field: fault.field, params })
 }
 
@@ -90,9 +95,10 @@ fn intersect_fault(
     graph: &mut Graph,
     params: &[Param],
     shape: ShapeId,
+    effort: Effort,
 ) -> Option<(Fault, ParamValues)> {
     frames(params).into_iter().find_map(|(values, frame)| {
-        let fault = intersect_violation::<f64>(graph, params, shape, &frame, RAY_ROUNDING)?;
+        let fault = intersect_violation::<f64>(graph, params, shape, &frame, RAY_ROUNDING, effort)?;
         let (at, field) = (fault.at().to_vec(), fault.field);
         Some((Fault { clause: Clause::Intersect(fault), at, field }, values))
     })
@@ -103,9 +109,10 @@ fn copies_fault(
     graph: &mut Graph,
     params: &[Param],
     shape: ShapeId,
+    effort: Effort,
 ) -> Option<(Fault, ParamValues)> {
     frames(params).into_iter().find_map(|(values, frame)| {
-        let fault = copies_violation(graph, params, shape, &frame, 1.0)?;
+        let fault = copies_violation(graph, params, shape, &frame, 1.0, effort)?;
         let (at, field) = (fault.to.to_vec(), fault.field);
         Some((Fault { clause: Clause::Copies(fault), at, field }, values))
     })
@@ -117,13 +124,14 @@ fn field_fault(
     params: &[Param],
     shape: ShapeId,
     stated: &Stated,
+    effort: Effort,
 ) -> Option<(Fault, ParamValues)> {
     if stated.is_empty() {
         return None;
     }
     let corners = Bounds::new(params).of(graph, shape);
     frames(params).into_iter().find_map(|(values, frame)| {
-        let probe = Probe::new(graph, shape, corners, &frame)?;
+        let probe = Probe::new(graph, shape, corners, &frame, effort)?;
         Some((first_fault(graph, stated, probe, &frame)?, values))
     })
 }

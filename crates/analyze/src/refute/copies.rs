@@ -9,7 +9,7 @@ use sdfc_graph::eval::{Dual, Evaluator, FrameValues, Tape, evaluate_frame};
 use sdfc_graph::{Bounds, Dim, Expander, Graph, NodeId, Param, Scene, ShapeId};
 
 use crate::analytic::copies::{CopySample, split_copies};
-use crate::refute::probe::Random;
+use crate::refute::probe::{Effort, Random};
 
 /// Number of points around which balls are tested, and of points outside from which each point of
 /// the shape is tested.
@@ -48,7 +48,8 @@ pub fn refute_copies(
 ) -> Option<CopiesViolation> {
     let mut extract = scene.graph.extract(&[], &[shape]);
     let shape = extract.shape(shape)?;
-    copies_violation(&mut extract.graph, &scene.params, shape, frame, radius_factor)
+    let effort = Effort(u64::MAX);
+    copies_violation(&mut extract.graph, &scene.params, shape, frame, radius_factor, effort)
 }
 
 /// As [`refute_copies`], in a graph to which nodes may be added.
@@ -58,6 +59,7 @@ pub(super) fn copies_violation(
     shape: ShapeId,
     frame: &FrameValues,
     radius_factor: f64,
+    effort: Effort,
 ) -> Option<CopiesViolation> {
     let stated = graph.shape(shape);
     if !stated.contract.copies || stated.dim != Dim::Three || stated.level > 0 {
@@ -73,7 +75,7 @@ pub(super) fn copies_violation(
         bounds: [0, 1].map(|end| [0, 1, 2].map(|axis| ends[end][axis])),
         radius_factor,
     };
-    (0..POINTS).find_map(|_| sampler.point())
+    (0..effort.of(POINTS, &around)).find_map(|_| sampler.point())
 }
 
 fn field(graph: &mut Graph, shape: ShapeId) -> Option<Tape> {

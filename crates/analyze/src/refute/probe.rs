@@ -35,6 +35,20 @@ pub(super) struct Probe {
     /// The longest edge of the region.
     scale: f64,
     random: Random,
+    effort: Effort,
+}
+
+/// The scalar operations that one test of a clause may take. A field that takes many is sampled at
+/// fewer points.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Effort(pub(super) u64);
+
+impl Effort {
+    /// Returns how many of `count` samples may be taken.
+    pub(super) fn of(self, count: usize, tape: &Tape) -> usize {
+        let most = self.0 / (tape.operations() as u64).max(1);
+        count.min(usize::try_from(most).unwrap_or(count))
+    }
 }
 
 impl Probe {
@@ -44,6 +58,7 @@ impl Probe {
         shape: ShapeId,
         corners: [NodeId; 2],
         frame: &FrameValues,
+        effort: Effort,
     ) -> Option<Self> {
         let dim = graph.shape(shape).dim;
         let values = evaluate_frame(graph, &corners, frame);
@@ -73,7 +88,7 @@ impl Probe {
             scale = scale.max(hi - lo);
         }
         let (axes, frame, random) = (axes(dim), frame.clone(), Random(7));
-        (scale > 0.0).then_some(Self { tape, frame, axes, bounds, region, scale, random })
+        (scale > 0.0).then_some(Self { tape, frame, axes, bounds, region, scale, random, effort })
     }
 
     fn field(&self) -> Evaluator<'_, f64> {
@@ -104,7 +119,7 @@ impl Probe {
     /// A point inside the shape and outside its bounds, and the field there.
     pub(super) fn beyond_bounds(&mut self) -> Option<(Vec<f64>, f64)> {
         let slack = SLACK * self.scale;
-        (0..PAIRS).find_map(|index| {
+        (0..self.effort.of(PAIRS, &self.tape)).find_map(|index| {
             let p = self.point([0.02, 0.2, 1.0][index % 3]);
             let beyond = |axis: usize| {
                 p[axis] < self.bounds[0][axis] - slack || p[axis] > self.bounds[1][axis] + slack
@@ -116,8 +131,9 @@ impl Probe {
 
     /// Two points of the region between which the slope exceeds `constant`, and the slope.
     pub(super) fn steeper(&mut self, constant: f64) -> Option<(Point, Point, f64)> {
+        let count = self.effort.of(PAIRS, &self.tape);
         let pairs: Vec<[Point; 2]> =
-            (0..PAIRS).map(|_| [self.point(0.0), self.point(0.0)]).collect();
+            (0..count).map(|_| [self.point(0.0), self.point(0.0)]).collect();
         let mut field = self.field();
         let mut slopes = self.tape.prepare::<Dual>(&self.frame);
         pairs.into_iter().enumerate().find_map(|(index, [p, other])| {
@@ -152,7 +168,7 @@ impl Probe {
         if surface.is_empty() {
             return None;
         }
-        for index in 0..POINTS {
+        for index in 0..self.effort.of(POINTS, &self.tape) {
             let p = self.point([0.0, 0.5][index % 2]);
             let field = self.at(p);
             let promise = promised[usize::from(field < 0.0)];
@@ -187,7 +203,9 @@ impl Probe {
 
     /// Points of the surface, by bisection between points of opposite sign.
     fn surface(&mut self) -> Vec<Point> {
-        let points: Vec<Point> = (0..4 * SURFACE).map(|i| self.point([0.0, 0.1][i % 2])).collect();
+        // Each point of the surface takes a bisection.
+        let count = self.effort.of(SURFACE * BISECTIONS, &self.tape) / BISECTIONS;
+        let points: Vec<Point> = (0..4 * count).map(|i| self.point([0.0, 0.1][i % 2])).collect();
         let mut field = self.tape.prepare::<f64>(&self.frame);
         let (inside, outside): (Vec<_>, Vec<_>) =
             points.into_iter().partition(|&p| field.scalar(p) < 0.0);
@@ -195,7 +213,7 @@ impl Probe {
             return Vec::new();
         }
         let mut random = Random(11);
-        (0..SURFACE)
+        (0..count)
             .map(|i| {
                 let from = inside[i % inside.len()];
                 let to = outside[(random.next() * outside.len() as f64) as usize % outside.len()];

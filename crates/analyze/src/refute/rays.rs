@@ -7,7 +7,7 @@
 use sdfc_graph::eval::{Evaluator, FrameValues, Number, Tape};
 use sdfc_graph::{Bounds, Dim, Expander, Graph, NodeId, Param, Scene, ShapeId};
 
-use crate::refute::probe::Random;
+use crate::refute::probe::{Effort, Random};
 
 /// Number of rays for each shape.
 const RAYS: usize = 4000;
@@ -49,7 +49,8 @@ pub fn refute_intersect<N: Number + Into<f64>>(
 ) -> Option<RayViolation> {
     let mut extract = scene.graph.extract(&[], &[shape]);
     let shape = extract.shape(shape)?;
-    intersect_violation::<N>(&mut extract.graph, &scene.params, shape, frame, rounding)
+    let effort = Effort(u64::MAX);
+    intersect_violation::<N>(&mut extract.graph, &scene.params, shape, frame, rounding, effort)
 }
 
 /// As [`refute_intersect`], in a graph to which nodes may be added.
@@ -59,6 +60,7 @@ pub(super) fn intersect_violation<N: Number + Into<f64>>(
     shape: ShapeId,
     frame: &FrameValues,
     rounding: f64,
+    effort: Effort,
 ) -> Option<RayViolation> {
     let stated = graph.shape(shape).intersect.clone();
     if stated.is_empty() {
@@ -82,7 +84,9 @@ pub(super) fn intersect_violation<N: Number + Into<f64>>(
         size: size.max(1e-3),
         rounding,
     };
-    (0..RAYS).find_map(|_| sampler.ray())
+    // Each ray takes samples of the field.
+    let rays = effort.of(RAYS * SAMPLES, &field) / SAMPLES;
+    (0..rays).find_map(|_| sampler.ray())
 }
 
 /// The end of an axis of the bounds, limited if it is infinite.

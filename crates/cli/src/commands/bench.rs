@@ -1,6 +1,5 @@
 //! `sdfc bench`: compares the specialised shader with interpreting baselines.
 
-use std::ops::ControlFlow;
 use std::path::Path;
 
 use sdfc::{Compiler, Diagnostics, Scene};
@@ -10,6 +9,7 @@ use sdfc_measure::{BenchOptions, BenchReport, BenchRow, BenchVariant, bench, lar
 use crate::args::Bench;
 use crate::console::Console;
 use crate::failure::Failure;
+use crate::interrupt::Interrupt;
 use crate::output::{self, Output};
 
 /// Measures the scenes, prints a table and writes the results.
@@ -42,6 +42,7 @@ pub fn run(args: &Bench, console: &Console) -> Result<(), Failure> {
         scenes.push(Entry::from_suite(name, &text, false)?);
     }
     let gpu = super::gpu(console)?;
+    let interrupt = Interrupt::watch("stopped; nothing was written", console);
     let mut rows = Vec::new();
     for Entry { name, scene, live, baselines } in &scenes {
         let (size, baselines) = (args.size, *baselines);
@@ -50,9 +51,11 @@ pub fn run(args: &Bench, console: &Console) -> Result<(), Failure> {
         let live = live.as_ref().map_err(String::as_str);
         let row = bench(scene, live, name, &gpu, &options, &mut |part| {
             progress.set(part.done, part.total);
-            ControlFlow::Continue(())
+            interrupt.flow()
         });
-        rows.push(row.map_err(|error| super::measuring(&error, console))?);
+        drop(progress);
+        let failed = |error| interrupt.explained(super::measuring(&error, console));
+        rows.push(row.map_err(failed)?);
     }
     let (adapter, driver) = (gpu.info().name.clone(), gpu.info().driver.clone());
     let report = BenchReport { adapter, driver, rows };

@@ -1,6 +1,5 @@
 //! `sdfc chart` for one scene: compares all ray methods with the oracle.
 
-use std::ops::ControlFlow;
 use std::path::Path;
 
 use sdfc::{Error, Scene};
@@ -12,6 +11,7 @@ use crate::args::{Cache, Chart};
 use crate::cache::TruthFolder;
 use crate::console::Console;
 use crate::failure::Failure;
+use crate::interrupt::Interrupt;
 use crate::output::{self, Output};
 
 /// The method that the others are compared with.
@@ -31,7 +31,8 @@ pub(super) fn one(args: &Chart, file: &Path, console: &Console) -> Result<(), Fa
         output.check()?;
     }
     let form = args.output.as_deref().map_or(Ok(Form::Svg), Form::of)?;
-    let chart = charted(args, file, console)?;
+    let interrupt = Interrupt::watch("stopped; nothing was written", console);
+    let chart = charted(args, file, console, &interrupt)?;
     if ![&picture, &json].contains(&&Some(Output::Stdout)) {
         output::to_stdout(table(&chart).as_bytes())?;
     }
@@ -42,10 +43,15 @@ pub(super) fn one(args: &Chart, file: &Path, console: &Console) -> Result<(), Fa
 }
 
 /// Returns the chart of a scene.
-pub(super) fn charted(args: &Chart, file: &Path, console: &Console) -> Result<Results, Failure> {
+pub(super) fn charted(
+    args: &Chart,
+    file: &Path,
+    console: &Console,
+    interrupt: &Interrupt,
+) -> Result<Results, Failure> {
     let scene = super::scene(file, super::compiler(), console)?;
     let options = ChartOptions::new().size(args.size).methods(args.march.clone());
-    let chart = measured(file, &scene, &options, &args.cache, console)?;
+    let chart = measured(file, &scene, &options, &args.cache, console, interrupt)?;
     Ok(Results { made: args.note.clone(), ..chart })
 }
 
@@ -93,22 +99,23 @@ pub(super) fn measured(
     options: &ChartOptions,
     cache: &Cache,
     console: &Console,
+    interrupt: &Interrupt,
 ) -> Result<Results, Failure> {
-    let failed = |error: Error| super::lowering(&error, console);
+    let failed = |error: Error| interrupt.explained(super::lowering(&error, console));
     let gpu = Gpu::new().map_err(|error| failed(error.into()))?;
-    let truth = console.progress("computing exact hits");
-    let pictures = console.progress("drawing with all methods");
+    let progress = console.progress("computing exact hits");
     let folder = TruthFolder::new(cache);
     let name = file.display().to_string();
     let asked = OracleOptions {
-        progress: &|part| truth.set(part.done, part.total),
+        progress: &|part| progress.set(part.done, part.total),
         store: folder.as_ref().map(|folder| folder as &dyn TruthStore),
     };
     let chart = sdfc_measure::chart(scene, &name, &gpu, options, asked, &mut |part| {
-        pictures.set(part.done, part.total);
-        ControlFlow::Continue(())
+        progress.rename("drawing with all methods");
+        progress.set(part.done, part.total);
+        interrupt.flow()
     });
-    drop((truth, pictures));
+    drop(progress);
     chart.map_err(failed)
 }
 

@@ -10,6 +10,7 @@ use super::chart::{Form, charted, drawn, one, outdone, statistic};
 use crate::args::Chart;
 use crate::console::Console;
 use crate::failure::Failure;
+use crate::interrupt::Interrupt;
 use crate::output::{self, Output};
 
 /// The first line of a page of charts.
@@ -49,12 +50,13 @@ fn folder_of_charts(
     let index = folder.join("README.md");
     own_page(&index)?;
     let names = names(files)?;
+    let interrupt = Interrupt::watch("stopped; finished charts stay", console);
     let mut charts = Vec::new();
     for (file, name) in files.iter().zip(names) {
         let path = |ending: &str| Output::new(&folder.join(format!("{name}.{ending}")));
         let [svg, png, json] = ["svg", "png", "json"].map(path);
         [&svg, &png, &json].into_iter().try_for_each(Output::check)?;
-        let chart = charted(args, file, console)?;
+        let chart = charted(args, file, console, &interrupt)?;
         svg.write(&drawn(&chart, Form::Svg, false)?)?;
         png.write(&drawn(&chart, Form::Png, args.dark)?)?;
         json.write(&output::json(&chart)?)?;
@@ -98,10 +100,11 @@ fn own_page(path: &Path) -> Result<(), Failure> {
 fn table(args: &Chart, files: &[PathBuf], console: &Console) -> Result<(), Failure> {
     let Some(output) = args.table.as_deref().map(Output::new) else { return Ok(()) };
     output.check()?;
+    let interrupt = Interrupt::watch("stopped; nothing was written", console);
     let mut charts = Vec::new();
     for file in files {
         let name = file.with_extension("").to_string_lossy().into_owned();
-        charts.push((name, charted(args, file, console)?));
+        charts.push((name, charted(args, file, console, &interrupt)?));
     }
     let head =
         head("# What `auto` does, scene by scene\n", &command_line(args, "--table FILE"), &charts);

@@ -25,9 +25,9 @@ pub fn run(args: &Format, console: &Console) -> Result<(), Failure> {
             console.error(&format!("{} is not formatted; run `sdfc fmt {0}`", input.name));
             return Err(Failure::Scene);
         }
-        if !args.check && (changes || output == Output::Stdout) {
-            output.write(formatted.as_bytes())?;
+        if args.check || !(changes || output == Output::Stdout) {
+            return Ok(());
         }
-        Ok(())
+        output.write_unless_changed(input.text.as_bytes(), formatted.as_bytes())
     })
 }

@@ -122,7 +122,7 @@ fn mesh_work<T>(
     console: &Console,
     work: impl FnOnce(&mut dyn FnMut(MeshProgress) -> ControlFlow<()>) -> Result<T, Error>,
 ) -> Result<T, Failure> {
-    let interrupt = Interrupt::watch();
+    let interrupt = Interrupt::watch("stopped; nothing was written", console);
     let progress = console.progress(name);
     let done = work(&mut |part| {
         progress.set(part.done, part.total);
@@ -131,7 +131,7 @@ fn mesh_work<T>(
     drop(progress);
     done.map_err(|error| {
         if matches!(error, Error::Mesh(MeshError::Cancelled)) {
-            return Failure::Interrupted("stopped; nothing was written".to_owned());
+            return interrupt.failure();
         }
         lowering(&error, console)
     })
@@ -166,14 +166,15 @@ fn shown(compiled: Result<Scene, Diagnostics>, console: &Console) -> Result<Scen
     }
 }
 
-/// Converts an error that occurred after the scene compiled.
+/// Converts an error that occurred after the scene compiled. A command that Ctrl-C stopped says more
+/// by [`Interrupt::explained`].
 fn lowering(error: &Error, console: &Console) -> Failure {
     let message = error.to_string();
     if error.is_machine() {
         return Failure::Machine(message);
     }
     if matches!(error, Error::Render(RenderError::Cancelled)) {
-        return Failure::Interrupted("stopped; no picture was written".to_owned());
+        return Failure::Interrupted("stopped".to_owned());
     }
     if error.is_call() {
         return Failure::Call(message);

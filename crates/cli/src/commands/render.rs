@@ -16,7 +16,7 @@ use crate::farm::provenance::{Drawing, Provenance};
 use crate::farm::region;
 use crate::farm::resume::{Existing, existing};
 use crate::interrupt::Interrupt;
-use crate::output::{self, Output};
+use crate::output::{self, Output, PartialFile};
 use crate::sequence::{self, Frames};
 use sdfc_files::Format;
 
@@ -46,7 +46,7 @@ pub fn run(args: &Render, console: &Console) -> Result<(), Failure> {
     }
     let values = values(&scene, args);
     outputs.check(frames)?;
-    let interrupt = Interrupt::watch();
+    let interrupt = Interrupt::watch("stopped; no picture was written", console);
     let job = Job {
         args,
         console,
@@ -261,7 +261,7 @@ impl<'a> Job<'a> {
             let position = [before + 1, frames.count()];
             if let Some(unproven) = self.finished(outputs, Some(number), &drawing) {
                 if self.interrupt.flow().is_break() {
-                    return Err(stopped([before, frames.count()]));
+                    return Err(self.interrupt.failure());
                 }
                 self.report(outputs, Some(number), true, position, unproven)?;
                 skipped += 1;
@@ -376,12 +376,33 @@ impl<'a> Job<'a> {
         Ok(self.painter.get_or_init(|| painter))
     }
 
-    /// Writes all frames to one file after the last is drawn.
+    /// Writes each frame as soon as it is drawn to one file, which gets its name after the last.
     fn animation(&self, outputs: &Outputs, frames: Frames) -> Result<(), Failure> {
+        let Output::File(path) = outputs.picture(None) else { return Ok(()) };
+        let mut file = PartialFile::begin(&path)?;
+        let last = self.frames_into(&mut file, outputs, frames);
+        // A file that could not be written is the reason, and not what the encoder makes of it.
+        file.failure().map_or(Ok(()), Err)?;
+        let last = last?;
+        file.finish()?;
+        if let Some(picture) = last {
+            self.print_notes(&picture);
+            let name = format!("{}: {} frames", path.display(), frames.count());
+            self.print_files(&picture, &name);
+        }
+        Ok(())
+    }
+
+    /// Draws the frames of an animation, and returns the last.
+    fn frames_into(
+        &self,
+        file: &mut PartialFile,
+        outputs: &Outputs,
+        frames: Frames,
+    ) -> Result<Option<Picture>, Failure> {
         let refused = |error: RenderError| super::lowering(&error.into(), self.console);
         let progress = self.console.progress("drawing");
-        let mut file = Vec::new();
-        let mut animation = Animation::new(&mut file).map_err(refused)?;
+        let mut animation = Animation::new(file).map_err(refused)?;
         let (mut last, mut said) = (None, false);
         for (number, before) in frames.numbers().zip(0..) {
             let picture = self.frame(number, &progress, [before, frames.count()])?;
@@ -397,17 +418,7 @@ impl<'a> Job<'a> {
             self.report(outputs, Some(number), false, [before + 1, frames.count()], unproven)?;
             last = Some(picture);
         }
-        drop((animation, progress));
-        let output = outputs.picture(None);
-        output.write(&file)?;
-        if let Some(picture) = last {
-            self.print_notes(&picture);
-            if let Output::File(path) = output {
-                let name = format!("{}: {} frames", path.display(), frames.count());
-                self.print_files(&picture, &name);
-            }
-        }
-        Ok(())
+        Ok(last)
     }
 
     /// Draws one frame of a sequence. `position` is how many come before it, and how many there
@@ -420,10 +431,9 @@ impl<'a> Job<'a> {
     ) -> Result<Picture, Failure> {
         let time = sequence::time(number, self.args.fps);
         let values = FrameValues { time, frame: f64::from(number), ..self.values.clone() };
-        let picture = self.paint(&values, 1, progress, position);
-        picture.map_err(|failure| {
-            if matches!(failure, Failure::Interrupted(_)) { stopped(position) } else { failure }
-        })
+        let [before, all] = position;
+        self.interrupt.set_message(format!("stopped after {before} of {all} frames"));
+        self.paint(&values, 1, progress, position)
     }
 
     fn paint(
@@ -443,7 +453,8 @@ impl<'a> Job<'a> {
             ControlFlow::Continue(()) => picture,
             ControlFlow::Break(()) => Err(RenderError::Cancelled.into()),
         };
-        let picture = picture.map_err(|e| super::lowering(&e, self.console))?;
+        let failed = |e| self.interrupt.explained(super::lowering(&e, self.console));
+        let picture = picture.map_err(failed)?;
         match &picture.unproven {
             Some(unproven) if self.args.strict => {
                 self.console.error(unproven);
@@ -496,11 +507,6 @@ impl<'a> Job<'a> {
         let [width, height] = picture.stats.size;
         self.console.note(&format!("{name}: {width}x{height}, drawn on {}", adapter(picture)));
     }
-}
-
-/// Ctrl-C in a sequence, after this many of this many frames.
-fn stopped([before, all]: [u32; 2]) -> Failure {
-    Failure::Interrupted(format!("stopped after {before} of {all} frames"))
 }
 
 /// The device that drew, with its driver.

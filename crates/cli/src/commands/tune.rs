@@ -9,6 +9,7 @@ use super::chart::measured;
 use crate::args::Tune;
 use crate::console::Console;
 use crate::failure::Failure;
+use crate::interrupt::Interrupt;
 use crate::output::{self, Output};
 
 /// Charts the scene and prints the setting to write in it.
@@ -24,7 +25,8 @@ pub fn run(args: &Tune, console: &Console) -> Result<(), Failure> {
     let all = || Method::all().filter(|method| RAY_METHODS.contains(&method.name())).collect();
     let methods = if args.march.is_empty() { all() } else { args.march.clone() };
     let options = ChartOptions::new().size(args.size).methods(methods);
-    let chart = measured(&args.file, &scene, &options, &args.cache, console)?;
+    let interrupt = Interrupt::watch("stopped; nothing was written", console);
+    let chart = measured(&args.file, &scene, &options, &args.cache, console, &interrupt)?;
     // Written first: the results show why no method stays within the limit, if none does.
     if let Some(json) = &json {
         json.write(&output::json(&chart)?)?;

@@ -6,6 +6,7 @@ use std::{
     time::Duration,
 };
 
+use super::injection::loses_device;
 use crate::error::RenderError;
 use crate::stats::AdapterInfo;
 
@@ -114,6 +115,7 @@ impl Gpu {
         what: &str,
         calls: impl FnOnce() -> T,
     ) -> Result<T, RenderError> {
+        self.lose_if_asked();
         let push = |filter| self.device.push_error_scope(filter);
         let internal = push(wgpu::ErrorFilter::Internal);
         let memory = push(wgpu::ErrorFilter::OutOfMemory);
@@ -135,6 +137,7 @@ impl Gpu {
 
     /// Waits until the device has finished all submitted work, or until the timeout.
     pub(crate) fn wait(&self, patience: Option<Duration>) -> Result<(), RenderError> {
+        self.lose_if_asked();
         let polled = self.poll(wgpu::PollType::Wait { submission_index: None, timeout: patience });
         self.faults.check()?;
         match polled {
@@ -144,6 +147,12 @@ impl Gpu {
             }
             Some(Err(error)) => Err(RenderError::DeviceLost(error.to_string())),
             None => Err(RenderError::DeviceLost("while waiting for it".to_owned())),
+        }
+    }
+
+    fn lose_if_asked(&self) {
+        if loses_device() {
+            self.device.destroy();
         }
     }
 

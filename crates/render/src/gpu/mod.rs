@@ -3,6 +3,7 @@
 mod culling;
 mod culling_layout;
 mod device;
+mod injection;
 mod kernel;
 mod pipeline;
 mod resources;

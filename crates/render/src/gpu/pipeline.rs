@@ -7,7 +7,6 @@ use super::device::Gpu;
 use super::kernel::Kernel;
 use super::resources::{FIRST_TABLE, WORKGROUP, compute_pipeline, entry, table};
 use super::run::{BESIDE_PIXELS, Buffers, Moment, Run};
-use super::testing;
 use crate::blocks::{PIXEL_BYTES, UNIFORM_BYTES, VIEW_BYTES, uniform_bytes};
 use crate::clock::{Clock, milliseconds_since};
 use crate::error::RenderError;
@@ -181,7 +180,6 @@ impl Pipeline {
         let (mut milliseconds, mut tiles, mut done) = (0.0, 0, 0);
         let total = tiler.pixels();
         while let Some(tile) = tiler.next() {
-            testing::lose_if_asked(&self.kernel.gpu);
             let start = Instant::now();
             let gpu_time = run.draw(view, tile, region.origin, &mut image)?;
             let elapsed = milliseconds_since(start);

@@ -22,10 +22,9 @@
 //! A device can be lost on purpose: [`lose`] does it, and [`LOSE_DEVICE`] makes a program of a
 //! debug build do it.
 
-use std::sync::{
-    OnceLock,
-    atomic::{AtomicU32, Ordering},
-};
+use std::sync::OnceLock;
+
+pub use super::injection::LOSE_DEVICE;
 
 use super::device::Gpu;
 use crate::error::RenderError;
@@ -50,24 +49,9 @@ pub fn with_storage(bytes: u64) -> Result<Gpu, RenderError> {
     Gpu::with_limits(|limits| wgpu::Limits { max_storage_buffer_binding_size: bytes, ..limits })
 }
 
-/// The environment variable that makes a build with debug assertions lose its device, as if the
-/// adapter had been unplugged, after this many tiles.
-pub const LOSE_DEVICE: &str = "SDFC_LOSE_DEVICE_AFTER";
-
 /// Loses the device.
 pub fn lose(gpu: &Gpu) {
     gpu.device.destroy();
-}
-
-/// Called before each tile: loses the device if [`LOSE_DEVICE`] asks for it.
-pub(crate) fn lose_if_asked(gpu: &Gpu) {
-    static TILES: AtomicU32 = AtomicU32::new(0);
-    if cfg!(debug_assertions)
-        && let Some(after) = std::env::var_os(LOSE_DEVICE)
-        && *after == *TILES.fetch_add(1, Ordering::Relaxed).to_string()
-    {
-        lose(gpu);
-    }
 }
 
 fn ignored(required: bool, present: impl FnOnce() -> bool) -> bool {

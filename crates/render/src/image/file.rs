@@ -1,5 +1,7 @@
 //! Pictures as files.
 
+use std::io::Write;
+
 use image::codecs::gif::{GifEncoder, Repeat};
 
 use super::Image;
@@ -39,28 +41,29 @@ impl Image {
 
 /// An animated GIF while its frames are added; it repeats without end. Each frame has its own 256
 /// colours.
-pub struct Animation<'a> {
-    encoder: GifEncoder<&'a mut Vec<u8>>,
+pub struct Animation<W: Write> {
+    encoder: GifEncoder<W>,
 }
 
-impl<'a> Animation<'a> {
-    /// Starts an animation without frames. The file is complete when this value is dropped.
+impl<W: Write> Animation<W> {
+    /// Starts an animation without frames. The file is complete when this value is dropped; `file`
+    /// itself has to remember if its last bytes could not be written.
     ///
     /// # Errors
     ///
-    /// As [`Image::to_png`].
-    pub fn new(file: &'a mut Vec<u8>) -> Result<Self, RenderError> {
+    /// [`RenderError::OutOfMemory`] if bytes cannot be written.
+    pub fn new(file: W) -> Result<Self, RenderError> {
         let mut encoder = GifEncoder::new(file);
         encoder.set_repeat(Repeat::Infinite).map_err(refused)?;
         Ok(Self { encoder })
     }
 
     /// Adds a frame that is shown for a number of hundredths of a second; few viewers show one for
-    /// less than 2.
+    /// less than 2. Its bytes are written at once.
     ///
     /// # Errors
     ///
-    /// As [`Image::to_png`].
+    /// As [`Self::new`].
     pub fn push(&mut self, image: &Image, hundredths: u32) -> Result<(), RenderError> {
         let [width, height] = image.size;
         let opaque = |rgb: &[u8]| [rgb[0], rgb[1], rgb[2], 255];

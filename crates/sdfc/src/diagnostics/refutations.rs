@@ -11,17 +11,21 @@ use super::origins::Origins;
 
 /// At most this many instances of a declaration are sampled.
 const MAX_SAMPLED: usize = 8;
+/// About how many scalar operations the tests of all declarations may take together: some seconds.
+/// Formulas that take more are sampled at fewer points.
+const MAX_OPERATIONS: u64 = 1 << 31;
 
 /// Returns at most one error for each declaration of the scene.
 pub(crate) fn refutations(elaborated: &Elaborated) -> Vec<Diagnostic> {
     let origins = Origins::new(elaborated);
     let graph = &elaborated.scene.graph;
     let mut errors = Vec::new();
+    let share = MAX_OPERATIONS / (elaborated.declared.len() as u64).max(1);
     for declared in &elaborated.declared {
         let instances = graph.shape_ids();
         let instances = instances.filter(|&id| graph.shape(id).definition == declared.definition);
         let instances: Vec<ShapeId> = instances.take(MAX_SAMPLED).collect();
-        if let Some(refuted) = refute(&elaborated.scene, &instances).first()
+        if let Some(refuted) = refute(&elaborated.scene, &instances, share).first()
             && let Some(mut error) = refutation(declared, refuted)
         {
             error = with_params(error, refuted.params);
@@ -41,10 +45,11 @@ fn functions(elaborated: &Elaborated) -> Vec<Diagnostic> {
     for claimed in &elaborated.claims {
         calls.entry(claimed.span).or_default().push(claimed);
     }
+    let share = MAX_OPERATIONS / (MAX_SAMPLED * calls.len()).max(1) as u64;
     let refuted = calls.into_iter().filter_map(|(span, calls)| {
         let mut sampled = calls.into_iter().take(MAX_SAMPLED);
         let fault = sampled.find_map(|Claimed { value, claim, .. }| {
-            refute_lipschitz(&elaborated.scene, *value, claim)
+            refute_lipschitz(&elaborated.scene, *value, claim, share)
         })?;
         let message = format!(
             "this states `lipschitz {}`, but between p = {} and {} the result changes {} times as \

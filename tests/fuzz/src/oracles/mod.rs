@@ -8,6 +8,8 @@ use sdfc_render::testing;
 use sdfc_tests::agree::{self, Disagreement};
 use sdfc_tests::validators::{PARTS, Part, TOOLS, is_written, write};
 
+use serde::{Deserialize, Serialize};
+
 use crate::repair::NAME;
 use crate::texts;
 
@@ -21,7 +23,7 @@ pub struct Subject {
 }
 
 /// A program and what does not hold of it.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Finding {
     /// The fault in a word or two. While a program is shrunk, its fault stays the same.
     pub kind: String,
@@ -121,6 +123,27 @@ pub const ORACLES: [Oracle; 15] = [
         summary: "GPU, CPU in f32 and CPU in f64 draw the same picture",
         holds: devices,
     },
+];
+
+/// Names for several oracles: those that only compile and evaluate, those that write shaders, and
+/// those that draw.
+pub const GROUPS: [(&str, &[&str]); 3] = [
+    (
+        "quick",
+        &[
+            "format",
+            "number",
+            "live",
+            "gradient",
+            "certificate",
+            "bounds",
+            "loops",
+            "service",
+            "clauses",
+        ],
+    ),
+    ("shaders", &["compile", "targets"]),
+    ("pictures", &["mesh", "regions", "methods", "devices"]),
 ];
 
 /// Pictures are drawn of scenes with at most this many operations per evaluation: software drivers

@@ -1,4 +1,4 @@
-//! Runs texts through oracles for some time.
+//! Judges one damaged text after the other.
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -7,8 +7,9 @@ use fastrand::Rng;
 
 use super::oracles::TextOracle;
 use super::{damaged, files, shrink};
-use crate::campaign::{Event, Limits, SLOW, Table, note, within_limit};
+use crate::campaign::{Event, Limits, SLOW, found, in_turn, within_limit};
 use crate::oracles::{Finding, Verdict};
+use crate::table::{Answer, Judged, Table};
 
 /// The time for shrinking a finding.
 const SHRINKING: Duration = Duration::from_secs(30);
@@ -26,50 +27,54 @@ pub fn run(
     on: &mut dyn FnMut(&Event<'_>),
 ) -> Result<Table, String> {
     let files = files().map_err(|e| e.to_string())?;
-    let start = Instant::now();
-    let mut table = Table::new(oracles.iter().map(|oracle| oracle.name));
-    for seed in (limits.seed..).take(limits.programs as usize) {
-        if start.elapsed() >= limits.time {
-            break;
-        }
+    let table = Table::new(oracles.iter().map(|oracle| (oracle.name, oracle.summary)));
+    Ok(in_turn(limits, table, on, &mut |seed, on| {
         let text = damaged(&files, &mut Rng::with_seed(seed));
-        table.programs += 1;
-        table.bytes += text.len();
         on(&Event::Program(seed, &text));
-        for (row, oracle) in oracles.iter().enumerate() {
-            let outcome = judged(&text, *oracle);
-            let counts = &mut table.rows[row];
-            match outcome {
-                Ok(Verdict::LeftOut) => counts.left_out += 1,
-                Ok(Verdict::Holds) => counts.run += 1,
-                Err(found) => {
-                    counts.run += 1;
-                    counts.findings += 1;
-                    let (text, found) = shortest(&text, *oracle, found);
-                    note(&mut table, oracle.name, seed, found, text, on);
-                }
+        judge(seed, &text, oracles, limits.patience)
+    }))
+}
+
+fn judge(seed: u64, text: &str, oracles: &[TextOracle], patience: Duration) -> Judged {
+    let mut result = Judged { seed, bytes: text.len(), ..Judged::default() };
+    for oracle in oracles {
+        let start = Instant::now();
+        let outcome = judged(text, *oracle, patience);
+        let milliseconds = start.elapsed().as_millis() as u64;
+        let answer = match outcome {
+            Ok(Verdict::LeftOut) => Answer::LeftOut,
+            Ok(Verdict::Holds) => Answer::Holds,
+            Err(finding) => {
+                let (text, finding) = shortest(text, *oracle, finding, patience);
+                result.found.push(found(oracle.name, seed, finding, text));
+                Answer::Fails
             }
-        }
+        };
+        result.answers.push((answer, milliseconds));
     }
-    table.time = start.elapsed();
-    Ok(table)
+    result
 }
 
 /// Asks an oracle on a thread of its own: a panic and a long wait are findings.
-fn judged(text: &str, oracle: TextOracle) -> Result<Verdict, Finding> {
+fn judged(text: &str, oracle: TextOracle, patience: Duration) -> Result<Verdict, Finding> {
     let text = Arc::<str>::from(text);
-    within_limit(move || (oracle.holds)(&text)).and_then(|outcome| outcome)
+    within_limit(patience, move || (oracle.holds)(&text)).and_then(|outcome| outcome)
 }
 
 /// Shrinks a text that has a fault, for a limited time.
-fn shortest(text: &str, oracle: TextOracle, found: Finding) -> (String, Finding) {
+fn shortest(
+    text: &str,
+    oracle: TextOracle,
+    found: Finding,
+    patience: Duration,
+) -> (String, Finding) {
     if found.kind == SLOW {
         return (text.to_owned(), found);
     }
     let end = Instant::now() + SHRINKING;
     let mut last = found.clone();
     let text = shrink(text, TRIES, &mut |text| {
-        let again = if Instant::now() < end { judged(text, oracle).err() } else { None };
+        let again = if Instant::now() < end { judged(text, oracle, patience).err() } else { None };
         let again = again.filter(|again| again.kind == found.kind);
         again.map(|again| last = again).is_some()
     });
