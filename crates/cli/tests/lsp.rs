@@ -306,6 +306,34 @@ fn a_file_that_a_scene_imports_may_import_from_above() {
 }
 
 #[test]
+fn errors_of_elaboration_in_a_large_scene_come_after_a_pause() {
+    let folder = common::folder(&[]);
+    let mut editor = Editor::start(folder.path(), json!(["utf-16"]));
+    let uri = format!("file://{}/main.sdf", folder.path().display());
+    let ball = |at| format!("sphere(0.3).translate([{at}, 0, 0]).rotate(y: {at}deg)\n");
+    let balls: String = (0..2000).map(ball).collect();
+    let text = format!(
+        "solid ball(r: length) require r > 0, \"a ball needs a radius\" = length(p) - r\n{balls}"
+    );
+    editor.open(&uri, &text);
+    assert_eq!(editor.diagnostics(&uri), json!([]));
+    let end = json!({ "line": 2001, "character": 0 });
+    let mut type_at_end = |typed: &str| {
+        let change = json!([{ "range": { "start": end, "end": end }, "text": typed }]);
+        let document = json!({ "uri": uri, "version": 2 });
+        let params = json!({ "textDocument": document, "contentChanges": change });
+        editor.notify("textDocument/didChange", params);
+        editor.diagnostics(&uri)
+    };
+    // The scene takes long to elaborate, so the answer to a keystroke does not wait for that.
+    assert_eq!(type_at_end("ball(-1)\n"), json!([]));
+    let found = editor.diagnostics(&uri);
+    assert_eq!(found.as_array().unwrap().len(), 1, "{found}");
+    assert!(found[0]["message"].as_str().unwrap().contains("a ball needs a radius"), "{found}");
+    editor.end();
+}
+
+#[test]
 fn columns_are_bytes_for_an_editor_that_prefers_them() {
     let folder = common::folder(&[]);
     let mut editor = Editor::start(folder.path(), json!(["utf-8", "utf-16"]));

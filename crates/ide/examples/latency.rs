@@ -1,10 +1,14 @@
-//! Times how long the diagnostics and the completion of a keystroke take, in scenes of 1, 30 and
-//! 300 leaves, while a word at the end of the scene is typed and deleted.
+//! Times how long the answers to a keystroke take, in scenes of 1, 30, 300 and 3,000 leaves, while
+//! a call at the end of the scene is typed: the diagnostics, those that elaboration adds, and the
+//! completion.
 #![allow(missing_docs, clippy::print_stdout, reason = "it is a benchmark")]
 
 use std::time::{Duration, Instant};
 
-use sdfc_ide::{Analysis, NoFiles, complete, diagnostics};
+use sdfc_ide::{Analysis, NoFiles, complete, diagnostics, late_diagnostics};
+
+/// What is typed, one character after the other.
+const TYPED: &str = "sphere(1).translate(x: 1)";
 
 /// A union of moved shapes of three kinds.
 fn scene(leaves: usize) -> String {
@@ -24,24 +28,40 @@ fn percentile(times: &mut [Duration], part: usize) -> f64 {
 }
 
 fn main() {
-    println!("leaves | diagnostics p50, p99 | completion p50, p99 (ms)");
+    println!(
+        "| leaves | bytes | diagnostics, p50 | p99 | late, p50 | p99 | completion, p50 | p99 |"
+    );
+    println!("|---|---|---|---|---|---|---|---|");
     for leaves in [1, 30, 300, 3000] {
         let start = scene(leaves);
-        let (mut checks, mut completions) = (Vec::new(), Vec::new());
-        for at in 0..60 {
-            let word = "sphere(1).translate(x: 1)";
-            let typed = &word[..1 + at % word.len()];
-            let text = format!("{start}{typed}");
-            let before = Instant::now();
-            let found = diagnostics(&Analysis::new("scene.sdf", &text, &NoFiles), false);
-            checks.push(before.elapsed());
-            let before = Instant::now();
-            let list = complete("scene.sdf", &text, text.len(), &NoFiles, &[]);
-            completions.push(before.elapsed());
-            std::hint::black_box((found, list));
+        let whole = Analysis::new("scene.sdf", &start, &NoFiles);
+        assert!(diagnostics(&whole, false).is_empty(), "the scene has errors");
+        let (mut quick, mut late, mut completions) = (Vec::new(), Vec::new(), Vec::new());
+        // The first round fills caches.
+        for round in 0..5 {
+            for end in 1..=TYPED.len() {
+                let text = format!("{start}{}", &TYPED[..end]);
+                let before = Instant::now();
+                let scene = Analysis::new("scene.sdf", &text, &NoFiles);
+                let found = diagnostics(&scene, false);
+                let checked = before.elapsed();
+                let before = Instant::now();
+                let more = late_diagnostics(&scene, &NoFiles);
+                let elaborated = before.elapsed();
+                let before = Instant::now();
+                let list = complete("scene.sdf", &text, text.len(), &NoFiles, &[]);
+                let completed = before.elapsed();
+                std::hint::black_box((&found, more, list));
+                if round > 0 {
+                    quick.push(checked);
+                    completions.push(completed);
+                    // A text with errors is not elaborated.
+                    late.extend(found.is_empty().then_some(elaborated));
+                }
+            }
         }
-        let [a, b] = [50, 99].map(|part| percentile(&mut checks, part));
-        let [c, d] = [50, 99].map(|part| percentile(&mut completions, part));
-        println!("{leaves:6} | {a:6.2} {b:6.2} | {c:6.2} {d:6.2}");
+        let columns = [&mut quick, &mut late, &mut completions]
+            .map(|times| format!("{:.1} | {:.1}", percentile(times, 50), percentile(times, 99)));
+        println!("| {leaves} | {} | {} |", start.len(), columns.join(" | "));
     }
 }

@@ -2,6 +2,7 @@
 
 use sdfc_diagnostics::{Diagnostic, FileId, Sources, Span};
 use sdfc_lang::Resolver;
+use sdfc_lang::hir::Program;
 use sdfc_lang::import::{Imported, locate};
 use sdfc_lang::inspect::{Inspection, inspect, inspect_at};
 use sdfc_lang::uses::{Target, Uses};
@@ -45,6 +46,7 @@ pub struct Analysis {
     pub(crate) file: FileId,
     /// See [`Resolver::scene_path`].
     scene_path: String,
+    pub(crate) program: Program,
     pub(crate) tree: ast::File,
     pub(crate) imports: Vec<Imported>,
     pub(crate) uses: Uses,
@@ -54,8 +56,8 @@ pub struct Analysis {
 }
 
 impl Analysis {
-    /// Parses, checks and elaborates a scene. `name` is its path in messages and locations;
-    /// imported files are named by paths beside it.
+    /// Parses and checks a scene. `name` is its path in messages and locations; imported files are
+    /// named by paths beside it.
     pub fn new(name: &str, text: &str, resolver: &dyn Resolver) -> Self {
         let mut sources = Sources::new();
         let file = sources.add(name, text);
@@ -74,9 +76,9 @@ impl Analysis {
     }
 
     fn of(sources: Sources, (file, path): (FileId, &str), inspection: Inspection) -> Self {
-        let Inspection { tree, imports, uses, diagnostics: found } = inspection;
+        let Inspection { program, tree, imports, uses, diagnostics: found } = inspection;
         let (scene_path, occurrences) = (path.to_owned(), Vec::new());
-        Self { sources, file, scene_path, tree, imports, uses, found, occurrences }
+        Self { sources, file, scene_path, program, tree, imports, uses, found, occurrences }
     }
 
     /// The text of the scene.

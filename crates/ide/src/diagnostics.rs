@@ -2,7 +2,9 @@
 
 use std::ops::Range;
 
-use sdfc_diagnostics::{Code, Diagnostic, Severity};
+use sdfc_diagnostics::{Code, Diagnostic, Severity, has_errors};
+use sdfc_lang::Resolver;
+use sdfc_lang::inspect::elaborate;
 use sdfc_syntax::ast::Item;
 
 use crate::analysis::Analysis;
@@ -35,8 +37,9 @@ pub struct Found {
     pub unused: bool,
 }
 
-/// Returns the diagnostics of the scene. Those of an imported file are shown at the import. A file
-/// that another scene imports (`is_imported`) and a file of the library need not draw anything.
+/// Returns the diagnostics of the scene that its analysis finds. Those of an imported file are
+/// shown at the import. A file that another scene imports (`is_imported`) and a file of the library
+/// need not draw anything.
 pub fn diagnostics(analysis: &Analysis, is_imported: bool) -> Vec<Found> {
     let of_library = || library_files().iter().any(|(_, text)| *text == analysis.text());
     let shown = analysis
@@ -44,6 +47,15 @@ pub fn diagnostics(analysis: &Analysis, is_imported: bool) -> Vec<Found> {
         .iter()
         .filter(|it| it.code != Code::NOTHING_DRAWN || !(is_imported || of_library()));
     shown.map(|it| found(analysis, it)).collect()
+}
+
+/// Elaborates the scene and returns the diagnostics that only this step finds, such as a failed
+/// `require`. It takes longer than the analysis. A scene with other errors is not elaborated.
+pub fn late_diagnostics(analysis: &Analysis, resolver: &dyn Resolver) -> Vec<Found> {
+    if has_errors(&analysis.found) {
+        return Vec::new();
+    }
+    elaborate(&analysis.program, resolver).iter().map(|it| found(analysis, it)).collect()
 }
 
 fn found(analysis: &Analysis, it: &Diagnostic) -> Found {

@@ -2,9 +2,9 @@
 //!
 //! # What
 //!
-//! [`Analysis`] is a scene that was parsed, checked and, if it has no errors, elaborated. Every
-//! question is a function of it: [`diagnostics`], [`hover`], [`definition`], [`references()`],
-//! [`rename`] and so on. [`complete`] takes the text itself.
+//! [`Analysis`] is a scene that was parsed and checked. Every question is a function of it:
+//! [`diagnostics`], [`hover`], [`definition`], [`references()`], [`rename`] and so on. [`complete`]
+//! takes the text itself. [`late_diagnostics`] elaborates the scene.
 //!
 //! # How
 //!
@@ -54,7 +54,7 @@ pub use analysis::Analysis;
 pub use colors::{Color, color_presentations, colors};
 pub use completion::{Completion, CompletionKind, complete};
 pub use definition::definition;
-pub use diagnostics::{Found, Related, diagnostics};
+pub use diagnostics::{Found, Related, diagnostics, late_diagnostics};
 pub use edit::{Edit, Location};
 pub use facts::{Facts, Lens, ShapeFacts, facts_at, lenses};
 pub use folding::{Fold, FoldKind, folds};

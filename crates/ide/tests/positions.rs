@@ -1,15 +1,32 @@
 //! Every request at positions all over the examples and the library, and after random edits: none
 //! panics, and every answer lies inside of the text.
+//!
+//! `SDFC_CONFORMANCE=1 cargo test --release -p sdfc-ide --test positions` asks at every position,
+//! and makes 10,000 edits. Without the variable it takes a part of both.
 #![allow(missing_docs, clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
 use std::path::{Path, PathBuf};
 
 use sdfc_ide::{
     Analysis, Resolver, ShapeFacts, actions, colors, complete, definition, diagnostics, folds,
-    format, highlights, hints, hover, lenses, library_files, prepare_rename, references, rename,
-    selection, signature_help, symbols, tokens,
+    format, highlights, hints, hover, late_diagnostics, lenses, library_files, prepare_rename,
+    references, rename, selection, signature_help, symbols, tokens,
 };
 use sdfc_test_support::{example_sources, examples_folder};
+
+/// Positions between two that are asked about: 1 for all of them.
+fn stride() -> usize {
+    if is_complete() { 1 } else { 3 }
+}
+
+/// The number of random edits of all files together.
+fn edits() -> usize {
+    if is_complete() { 10_000 } else { 600 }
+}
+
+fn is_complete() -> bool {
+    std::env::var_os("SDFC_CONFORMANCE").is_some_and(|value| value == "1")
+}
 
 struct Folder(PathBuf);
 
@@ -82,8 +99,9 @@ fn every_request_is_answered_everywhere() {
             "{name}: {found:?}"
         );
         ask_whole(&scene);
-        (0..=text.len()).step_by(3).for_each(|offset| ask_at(&scene, offset));
-        for offset in (0..=text.len()).step_by((text.len() / 12).max(1)) {
+        (0..=text.len()).step_by(stride()).for_each(|offset| ask_at(&scene, offset));
+        let between = if is_complete() { 1 } else { (text.len() / 12).max(1) };
+        for offset in (0..=text.len()).step_by(between) {
             for it in complete(&name, &text, offset, &folder, &[]) {
                 assert!(text.get(it.replace.clone()).is_some(), "{it:?} in {name}");
             }
@@ -133,24 +151,42 @@ const TYPED: [&str; 24] = [
 #[test]
 fn random_edits_break_nothing() {
     let mut random = Random(0x9e37_79b9_7f4a_7c15);
-    for (name, original, folder) in scenes() {
+    let scenes = scenes();
+    let per_file = edits().div_ceil(scenes.len());
+    for (name, original, folder) in &scenes {
         // A part of a file from its start is quick to check and as broken as any text.
-        let end = (0..=original.len().min(1500)).rev().find(|at| original.is_char_boundary(*at));
-        let mut text = original[..end.unwrap_or(0)].to_owned();
-        for _ in 0..6 {
-            let at = random.below(text.len() + 1);
-            let at = (0..=at).rev().find(|at| text.is_char_boundary(*at)).unwrap_or(0);
-            if random.below(2) == 0 {
-                text.insert_str(at, TYPED[random.below(TYPED.len())]);
-            } else {
-                let end = (at + random.below(12)).min(text.len());
-                let end = (end..=text.len()).find(|at| text.is_char_boundary(*at));
-                text.replace_range(at..end.unwrap_or(text.len()), "");
+        let start = || original[..boundary(original, 1500)].to_owned();
+        let mut text = start();
+        for edit in 0..per_file {
+            // After a dozen edits little of the scene is left.
+            if edit % 12 == 0 {
+                text = start();
             }
-            let scene = Analysis::new(&name, &text, &folder);
+            let at = boundary(&text, random.below(text.len() + 1));
+            match random.below(5) {
+                0 | 1 => text.insert_str(at, TYPED[random.below(TYPED.len())]),
+                2 | 3 => {
+                    let end = boundary(&text, at + random.below(12));
+                    text.replace_range(at..end.max(at), "");
+                }
+                _ => {
+                    let (_, other, _) = &scenes[random.below(scenes.len())];
+                    let from = boundary(other, random.below(other.len() + 1));
+                    let to = boundary(other, from + random.below(120));
+                    text.insert_str(at, &other[from..to.max(from)]);
+                }
+            }
+            let scene = Analysis::new(name, &text, folder);
+            late_diagnostics(&scene, folder);
             ask_whole(&scene);
             (0..=text.len()).step_by(29).for_each(|offset| ask_at(&scene, offset));
-            complete(&name, &text, at.min(text.len()), &folder, &[]);
+            complete(name, &text, at.min(text.len()), folder, &[]);
         }
     }
+}
+
+/// The last position in a text that is at or before an offset and not inside of a character.
+fn boundary(text: &str, offset: usize) -> usize {
+    let last = offset.min(text.len());
+    (0..=last).rev().find(|at| text.is_char_boundary(*at)).unwrap_or(0)
 }

@@ -1,6 +1,9 @@
 //! The front end for editors: it keeps what the compiler drops, and does not stop at errors.
+//!
+//! Elaboration takes longer than parsing and checking, and finds few errors. So it is a separate
+//! step.
 
-use sdfc_diagnostics::{Diagnostic, FileId, Sources, has_errors};
+use sdfc_diagnostics::{Diagnostic, FileId, Sources};
 use sdfc_syntax::ast;
 
 use crate::font::Fonts;
@@ -12,26 +15,27 @@ use crate::{check_scene, elab};
 /// A scene with all that its check found out.
 #[derive(Clone, Debug)]
 pub struct Inspection {
+    /// The checked program; it is complete if there are no errors.
+    pub program: Program,
     /// The syntax tree of the scene.
     pub tree: ast::File,
     /// The imported files.
     pub imports: Vec<Imported>,
     /// Names, types and calls.
     pub uses: Uses,
-    /// The diagnostics of all phases that ran.
+    /// The diagnostics of the parser, the imports and the checker.
     pub diagnostics: Vec<Diagnostic>,
 }
 
-/// Parses, checks and, if there are no errors, elaborates a scene. Arguments as for
+/// Parses and checks a scene. Arguments as for
 /// [`front_with_imports`](crate::front_with_imports).
 pub fn inspect(sources: &mut Sources, file: FileId, resolver: &dyn Resolver) -> Inspection {
-    let (mut inspection, program) = inspect_with(sources, file, resolver, Uses::default());
-    if !has_errors(&inspection.diagnostics) {
-        let (_, found) =
-            elab::elaborate(&program, &Fonts::new(resolver), &elab::CompileValues::new());
-        inspection.diagnostics.extend(found);
-    }
-    inspection
+    inspect_with(sources, file, resolver, Uses::default())
+}
+
+/// Elaborates a scene without errors. Returns the diagnostics that only elaboration finds.
+pub fn elaborate(program: &Program, resolver: &dyn Resolver) -> Vec<Diagnostic> {
+    elab::elaborate(program, &Fonts::new(resolver), &elab::CompileValues::new()).1
 }
 
 /// Parses and checks a scene in which the name `cursor` marks the position of the cursor. So
@@ -42,7 +46,7 @@ pub fn inspect_at(
     resolver: &dyn Resolver,
     cursor: &str,
 ) -> Inspection {
-    inspect_with(sources, file, resolver, Uses::new(cursor)).0
+    inspect_with(sources, file, resolver, Uses::new(cursor))
 }
 
 fn inspect_with(
@@ -50,13 +54,13 @@ fn inspect_with(
     file: FileId,
     resolver: &dyn Resolver,
     uses: Uses,
-) -> (Inspection, Program) {
+) -> Inspection {
     let checked = check_scene(sources, file, resolver, Some(uses));
-    let inspection = Inspection {
+    Inspection {
+        program: checked.program,
         tree: checked.tree,
         imports: checked.imports,
         uses: checked.uses.unwrap_or_default(),
         diagnostics: checked.found,
-    };
-    (inspection, checked.program)
+    }
 }

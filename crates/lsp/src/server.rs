@@ -3,9 +3,10 @@
 use std::collections::{BTreeSet, VecDeque};
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Sender, channel};
+use std::time::{Duration, Instant};
 
 use lsp_server::{Connection, ErrorCode, Message, Notification, Request, RequestId, Response};
-use sdfc_ide::diagnostics;
+use sdfc_ide::{Resolver, diagnostics, late_diagnostics};
 use serde_json::{Value, json};
 
 use crate::answers::answer;
@@ -17,6 +18,10 @@ use crate::preview::{Ask, asked};
 use crate::questions::{Draw, Question, Questions, Reply};
 use crate::uri::{path, uri};
 
+/// If late diagnostics of a file take longer than this, they wait for a pause.
+const LATE: Duration = Duration::from_millis(20);
+/// After this long without a message, late diagnostics are looked for.
+const PAUSE: Duration = Duration::from_millis(250);
 /// The most requests for previews and params that may wait: each has a copy of all open texts.
 const MAX_QUESTIONS: usize = 64;
 
@@ -50,6 +55,8 @@ pub fn serve(
             documents: Documents::new(folders(&params), disk, compiler),
             disk,
             changed: BTreeSet::new(),
+            unfinished: BTreeSet::new(),
+            slow: BTreeSet::new(),
             waiting: VecDeque::new(),
             questions,
             replies: Vec::new(),
@@ -120,6 +127,10 @@ struct Server<'c, 'd> {
     disk: &'d dyn Disk,
     /// The files whose diagnostics have to be sent again.
     changed: BTreeSet<PathBuf>,
+    /// The files whose late diagnostics were not sent yet.
+    unfinished: BTreeSet<PathBuf>,
+    /// The files whose late diagnostics took long when they were last looked for.
+    slow: BTreeSet<PathBuf>,
     /// Messages that have arrived, in order.
     waiting: VecDeque<Message>,
     /// The questions for another thread.
@@ -138,8 +149,12 @@ impl<'c> Server<'c, 'c> {
             self.waiting.extend(self.connection.receiver.try_iter());
             if self.waiting.is_empty() {
                 self.publish()?;
-                let Ok(message) = self.connection.receiver.recv() else { return Ok(()) };
-                self.waiting.push_back(message);
+                let pause = if self.unfinished.is_empty() { Duration::MAX } else { PAUSE };
+                match self.connection.receiver.recv_timeout(pause) {
+                    Ok(message) => self.waiting.push_back(message),
+                    Err(error) if error.is_timeout() => self.finish()?,
+                    Err(_disconnected) => return Ok(()),
+                }
                 continue;
             }
             let Some(message) = self.waiting.pop_front() else { continue };
@@ -260,26 +275,51 @@ impl<'c> Server<'c, 'c> {
         self.changed.extend(self.documents.paths());
     }
 
-    /// Sends the diagnostics of the files that changed.
+    /// Sends the diagnostics of the files that changed. For a file whose late diagnostics take
+    /// long, it sends the others only.
     fn publish(&mut self) -> Result<(), String> {
-        let changed = std::mem::take(&mut self.changed);
-        for file in changed {
-            let found = self.diagnostics(&file);
-            let params = json!({ "uri": uri(&file), "diagnostics": found });
-            let method = "textDocument/publishDiagnostics".to_owned();
-            self.send(Message::Notification(Notification { method, params }))?;
+        for file in std::mem::take(&mut self.changed) {
+            let is_slow = self.slow.contains(&file);
+            self.publish_file(&file, !is_slow)?;
+            if is_slow {
+                self.unfinished.insert(file);
+            }
         }
         Ok(())
     }
 
-    fn diagnostics(&mut self, file: &Path) -> Value {
+    /// Sends the diagnostics that wait for a pause.
+    fn finish(&mut self) -> Result<(), String> {
+        for file in std::mem::take(&mut self.unfinished) {
+            self.publish_file(&file, true)?;
+        }
+        Ok(())
+    }
+
+    fn publish_file(&mut self, file: &Path, with_late: bool) -> Result<(), String> {
+        let found = self.diagnostics(file, with_late);
+        let params = json!({ "uri": uri(file), "diagnostics": found });
+        let method = "textDocument/publishDiagnostics".to_owned();
+        self.send(Message::Notification(Notification { method, params }))
+    }
+
+    fn diagnostics(&mut self, file: &Path, with_late: bool) -> Value {
         if !self.documents.is_open(file) {
             return json!([]);
         }
         let Some(scene) = self.documents.analysis(file) else { return json!([]) };
         let encoding = self.client.encoding;
         let lines = Lines::new(scene.text(), encoding);
-        let found = diagnostics(&scene, self.documents.is_imported(file));
+        let mut found = diagnostics(&scene, self.documents.is_imported(file));
+        if with_late {
+            let start = Instant::now();
+            let late = |resolver: &dyn Resolver| late_diagnostics(&scene, resolver);
+            found.extend(self.documents.with_resolver(file, late));
+            match start.elapsed() > LATE {
+                true => self.slow.insert(file.to_owned()),
+                false => self.slow.remove(file),
+            };
+        }
         let shown =
             found.iter().map(|it| diagnostic(&self.documents, &scene, &lines, it, encoding));
         shown.collect()
