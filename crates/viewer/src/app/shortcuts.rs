@@ -30,18 +30,22 @@ pub fn handle(
         return;
     }
     let pressed = |key| ctx.input(|input| input.modifiers.is_none() && input.key_pressed(key));
+    let with_ctrl = |key| ctx.input(|input| input.modifiers.command && input.key_pressed(key));
     for (key, side) in SIDES {
         if pressed(key) {
             session.move_camera(|camera| camera.look_from(side));
         }
+        if with_ctrl(key) {
+            session.move_camera(|camera| camera.look_from(side.opposite()));
+        }
     }
-    if pressed(Key::F) {
+    if pressed(Key::F) || pressed(Key::Period) {
         session.fit_view();
     }
     if pressed(Key::Home) || pressed(Key::H) {
         session.reset_camera();
     }
-    if pressed(Key::P) {
+    if pressed(Key::P) || pressed(Key::Num5) {
         session.move_camera(|camera| camera.set_parallel(!camera.is_parallel()));
     }
     if pressed(Key::B) {

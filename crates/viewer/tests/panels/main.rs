@@ -366,6 +366,25 @@ fn examples_are_chosen_by_their_pictures() {
 }
 
 #[test]
+fn ctrl_z_undoes_an_edit_even_if_the_cursor_has_moved_since() {
+    let mut fixture = Fixture::new();
+    let text = |fixture: &Fixture| fixture.harness.state().opened().text().to_string();
+    fixture.type_at_end("box(1)\n");
+    // egui records a state that has rested for a second: four frames of the harness.
+    fixture.harness.run_steps(6);
+    for _ in 0..2 {
+        fixture.key(Modifiers::NONE, Key::ArrowUp);
+        fixture.harness.run_steps(6);
+    }
+    fixture.key(Modifiers::COMMAND, Key::Z);
+    assert_eq!(text(&fixture), SCENE);
+    fixture.key(Modifiers::COMMAND, Key::Z);
+    assert_eq!(text(&fixture), SCENE);
+    fixture.key(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
+    assert_eq!(text(&fixture), format!("{SCENE}box(1)\n"));
+}
+
+#[test]
 fn completions_are_listed_and_inserted() {
     let mut fixture = Fixture::new();
     fixture.type_at_end("sph");

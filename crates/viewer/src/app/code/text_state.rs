@@ -60,6 +60,35 @@ pub fn record_replaced(ctx: &Context, id: Id, [before, after]: [&str; 2]) {
     record_change(ctx, id, [before, after], end..end);
 }
 
+/// The direction of a step in the history of a text.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Step {
+    /// Back.
+    Undo,
+    /// Forward again.
+    Redo,
+}
+
+/// Takes a step in the history of a text, and moves the cursor to where it was. Returns the text
+/// there; `None` if there is no other one in that direction. egui also records where the cursor
+/// rested; a step leads to the next state with another text.
+pub fn step(ctx: &Context, id: Id, text: &str, step: Step) -> Option<String> {
+    let mut state = TextEditState::load(ctx, id)?;
+    let mut undoer = state.undoer();
+    let mut at = (state.cursor.char_range().unwrap_or_default(), text.to_owned());
+    while at.1 == text {
+        let next = match step {
+            Step::Undo => undoer.undo(&at),
+            Step::Redo => undoer.redo(&at),
+        };
+        at = next?.clone();
+    }
+    state.cursor.set_char_range(Some(at.0));
+    state.set_undoer(undoer);
+    state.store(ctx, id);
+    Some(at.1)
+}
+
 /// Gives the editors in a new window the cursors and undo histories that they had in the old one.
 pub fn move_editors(old: &Context, new: &Context, scene: &Path, files: &[TabFile]) {
     for id in files.iter().map(|file| editor_id(scene, file)) {

@@ -27,6 +27,20 @@ pub enum Side {
     Bottom,
 }
 
+impl Side {
+    /// The side behind what is seen from this one.
+    pub fn opposite(self) -> Self {
+        match self {
+            Self::Front => Self::Back,
+            Self::Back => Self::Front,
+            Self::Right => Self::Left,
+            Self::Left => Self::Right,
+            Self::Top => Self::Bottom,
+            Self::Bottom => Self::Top,
+        }
+    }
+}
+
 impl OrbitCamera {
     /// Orbits around the pivot by a drag to the right and down, in heights of the picture. A planar
     /// picture follows the pointer instead.

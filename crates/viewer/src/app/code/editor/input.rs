@@ -5,7 +5,7 @@ use sdfc_ide::Completion;
 
 use super::CodeEditor;
 use crate::app::code::find_bar::FindRequest;
-use crate::app::code::text_state::{record_change, select};
+use crate::app::code::text_state::{Step, record_change, select, step};
 use crate::language::completions::{inserted, matching};
 use crate::session::Session;
 
@@ -50,6 +50,16 @@ impl CodeEditor {
         if let Some(completion) = accepted {
             self.insert(ui, id, &completion, session);
         }
+        let redo = [(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z), (Modifiers::COMMAND, Key::Y)];
+        let undo = [(Modifiers::COMMAND, Key::Z)];
+        // With Shift the key means the other one, so that one is looked for first.
+        for (keys, direction) in [(&redo[..], Step::Redo), (&undo[..], Step::Undo)] {
+            for (modifiers, key) in keys {
+                while ui.input_mut(|input| input.consume_key(*modifiers, *key)) {
+                    self.step(ui, id, direction, session);
+                }
+            }
+        }
         // Tab would move the focus.
         ui.input_mut(|input| {
             if input.consume_key(Modifiers::NONE, Key::Tab) {
@@ -57,6 +67,16 @@ impl CodeEditor {
             }
         });
         true
+    }
+
+    /// Takes a step in the history of the shown text, unless it cannot be edited.
+    fn step(&mut self, ui: &Ui, id: Id, direction: Step, session: &mut Session) {
+        if session.shown_draft().is_some()
+            && let Some(text) = step(ui.ctx(), id, session.shown_text(), direction)
+        {
+            session.edit_shown(|draft| draft.set_text(&text));
+            self.list.typing = false;
+        }
     }
 
     /// Shows the bar of the search, and does what it asks for.
