@@ -69,7 +69,7 @@ pub use cpu::{CpuScene, Real};
 pub use error::RenderError;
 pub use frame::{Frame, OnProgress, Progress, RenderOptions, no_progress, uniform_values};
 #[cfg(feature = "gpu")]
-pub use gpu::{Gpu, Pipeline, testing};
+pub use gpu::{DeviceTexture, Display, Gpu, Pipeline, testing};
 #[cfg(feature = "files")]
 pub use image::{Animation, Raster, RasterKind};
 pub use image::{

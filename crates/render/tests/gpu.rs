@@ -9,8 +9,8 @@ use libtest_mimic::{Arguments, Failed, Trial};
 use sdfc_graph::{Program, Shadow, eval::FrameValues};
 use sdfc_march::Method;
 use sdfc_render::{
-    Clock, CpuScene, Frame, Gpu, Image, Pipeline, Progress, RenderError, RenderOptions, TileSize,
-    View, compare, no_progress, testing, uniform_values,
+    Clock, CpuScene, DeviceTexture, Display, Frame, Gpu, Image, Pipeline, Progress, RenderError,
+    RenderOptions, TileSize, View, compare, no_progress, testing, uniform_values,
 };
 
 type Outcome = Result<(), Failed>;
@@ -30,6 +30,7 @@ fn main() {
         Trial::test("gpu_and_cpu_agree", gpu_and_cpu_agree),
         Trial::test("every_method_casts_the_same_soft_shadow", soft_shadows_are_the_same),
         Trial::test("tiles_give_the_picture_of_one_tile", tiles_give_the_picture_of_one_tile),
+        Trial::test("a_texture_shows_the_picture_that_is_copied", textures_show_the_same),
         Trial::test("a_param_moves_the_surface", a_param_moves_the_surface),
         Trial::test("fields_that_are_no_numbers_are_counted", not_a_number_is_counted),
         Trial::test("a_lost_device_is_an_error_and_stays_one", a_lost_device_stays_lost),
@@ -106,6 +107,34 @@ fn gpu_and_cpu_agree() -> Outcome {
             assert!(close.depth < 1e-3 && close.status == 0, "{method}: {close:?}");
         }
     }
+    Ok(())
+}
+
+fn textures_show_the_same() -> Outcome {
+    let gpu = Gpu::new()?;
+    let display = Display::new(&gpu)?;
+    let (size, program, frame) = ([77, 50], common::sphere_above_floor(), FrameValues::default());
+    let shader = sdfc_codegen::render_module(&program, Method::Auto)?;
+    let pipeline = Pipeline::new(&gpu, shader, program.uniforms.len())?;
+    let view = View::new(&program, &frame, None, size)?;
+    let uniforms = uniform_values(&program, &frame);
+    let options = RenderOptions::default();
+    let copied = pipeline.render(&view, &uniforms, &options, &mut no_progress)?.image.to_srgb8();
+    for tile_size in [TileSize::default(), TileSize::Fixed([16, 24])] {
+        let target = DeviceTexture::new(&gpu, size)?;
+        pipeline.show(&view, &uniforms, tile_size, (&display, &target), &mut no_progress)?;
+        let shown = testing::read_texture(&gpu, &target)?;
+        let shown: Vec<u8> = shown.chunks_exact(4).flat_map(|pixel| &pixel[..3]).copied().collect();
+        assert_eq!(shown.len(), copied.len());
+        // The power of the driver may round otherwise.
+        let far = shown.iter().zip(&copied).filter(|(a, b)| a.abs_diff(**b) > 1).count();
+        assert_eq!(far, 0, "{tile_size:?}");
+        assert!(copied.iter().any(|byte| *byte > 100));
+    }
+    let other = DeviceTexture::new(&gpu, [8, 8])?;
+    let target = (&display, &other);
+    let refused = pipeline.show(&view, &uniforms, TileSize::default(), target, &mut no_progress);
+    assert_eq!(refused, Err(RenderError::Size(size)));
     Ok(())
 }
 

@@ -21,6 +21,8 @@ pub struct Settings {
     pub light: bool,
     /// True if a text is formatted when it is saved.
     pub format_on_save: bool,
+    /// True if a drag with the middle button turns the camera, as in Blender.
+    pub middle_turns: bool,
     /// Width and height of the window in points.
     pub window: Option<[f32; 2]>,
     /// Recent scenes, the last one first.

@@ -12,6 +12,7 @@ use sdfc::{Method, PictureOptions, no_progress};
 
 use sdfc_render::{Gpu, HIT, testing};
 use sdfc_viewer::render::picture::Picture;
+use sdfc_viewer::render::window_device::WindowDevice;
 use sdfc_viewer::scene::model::{Engine, Model};
 use sdfc_viewer::session::Session;
 use sdfc_viewer::views::mode::ViewMode;
@@ -26,7 +27,7 @@ fn main() -> ExitCode {
     let arguments = Arguments::from_args();
     let required = std::env::var_os("SDFC_REQUIRE_GPU").is_some();
     let ignored = !required && Gpu::new().is_err();
-    let tests: [(&str, Test); 12] = [
+    let tests: [(&str, Test); 13] = [
         ("a_changed_number_makes_no_pipeline", numbers),
         ("a_changed_number_in_a_rerolled_scene_makes_no_pipeline", many),
         ("a_param_that_decides_what_is_built_compiles_the_scene_again", counts),
@@ -37,6 +38,7 @@ fn main() -> ExitCode {
         ("the_projection_can_differ_from_the_scenes_camera", parallel),
         ("regions_are_panned_instead_of_turned", planar),
         ("a_software_driver_leaves_long_formulas_to_the_cpu", long),
+        ("a_moving_picture_stays_on_the_device_of_the_window", on_window),
         ("lost_devices_are_opened_again", lost),
         ("all_methods_are_compared_with_the_oracle", compared),
     ];
@@ -88,7 +90,7 @@ impl Fixture {
     /// Waits for the finished picture of the newest model.
     fn finish(&mut self) -> Result<(), Failed> {
         self.until(|session| {
-            let (Some(model), Some(picture)) = (&session.model, &session.picture) else {
+            let (Some(model), Some(picture)) = (&session.model, session.known_picture()) else {
                 return false;
             };
             picture.finished && picture.request.model.serial == model.serial
@@ -104,6 +106,38 @@ fn ball(radius: &str) -> String {
     format!(
         "sphere({radius}).color(#d94f30)\ncamera(eye: [0, 0, 5], target: [0, 0, 0], fov: 40deg)\n"
     )
+}
+
+fn on_window() -> Result<(), Failed> {
+    let mut fixture = Fixture::new(&ball("1"))?;
+    let gpu = Gpu::new()?;
+    fixture.session.set_window_device(Some(WindowDevice::new(gpu.clone())));
+    fixture.until(|session| session.model.as_ref().is_some_and(|model| model.on_window))?;
+    fixture.finish()?;
+    // The same rays: the picture that is there serves.
+    fixture.session.request_picture(SIZE, true);
+    fixture.finish()?;
+    let start = Instant::now();
+    let mut turns = 0;
+    while fixture.session.moving.is_none() {
+        expect(start.elapsed() < TIMEOUT, "no picture stays on the device")?;
+        fixture.session.move_camera(|camera| camera.orbit(0.01, 0.0));
+        fixture.session.request_picture(SIZE, true);
+        turns += 1;
+        std::thread::sleep(Duration::from_millis(2));
+        fixture.session.poll();
+    }
+    let moving = fixture.session.moving.clone().ok_or("it is there")?;
+    expect(turns > 0 && fixture.session.pixel_info([0.5, 0.5]).is_none(), "its pixels are known")?;
+    expect(moving.texture.size() == SIZE.map(|side| side.div_ceil(moving.divisor)), "its size")?;
+    let bytes = testing::read_texture(&gpu, &moving.texture)?;
+    let red = bytes.chunks_exact(4).filter(|pixel| pixel[0] / 2 > pixel[2]).count();
+    expect(red * 20 > bytes.len() / 4, "it does not show the ball")?;
+    // At rest the pixels are known again.
+    fixture.finish()?;
+    expect(fixture.session.moving.is_none(), "the moving picture is still shown")?;
+    let info = fixture.session.pixel_info([0.5, 0.5]).ok_or("no pixel")?;
+    expect(info.status == HIT, "the ball is not in the middle")
 }
 
 fn numbers() -> Result<(), Failed> {
@@ -324,6 +358,7 @@ fn planar() -> Result<(), Failed> {
         camera.orbit(1.0 / height, 0.0);
     });
     fixture.until(|session| session.picture_count > pictures)?;
+    fixture.finish()?;
     let edge = fixture.session.pixel_info([0.5, 0.5]).ok_or("nothing is there")?;
     expect((edge.point.x + 1.0).abs() < 0.05, &format!("{edge:?}"))?;
     for mode in ViewMode::ALL {

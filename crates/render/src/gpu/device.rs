@@ -59,26 +59,35 @@ impl Gpu {
     }
 
     fn open(adapter: &wgpu::Adapter, limits: wgpu::Limits) -> Result<Self, RenderError> {
-        // Timestamps at the borders of a pass need no further feature.
-        let wanted = adapter.features() & wgpu::Features::TIMESTAMP_QUERY;
-        let descriptor = wgpu::DeviceDescriptor {
-            label: Some("sdfc"),
-            required_features: wanted,
-            // All limits of the adapter, because the default buffer sizes are smaller.
-            required_limits: limits,
-            ..wgpu::DeviceDescriptor::default()
-        };
+        let descriptor = descriptor(adapter, limits);
         let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))
             .map_err(|error| RenderError::NoDevice(error.to_string()))?;
-        let faults = Arc::new(Faults::default());
-        faults.listen(&device);
-        Ok(Self {
-            device,
-            queue,
+        let gpu = Self::of_program(adapter, &device, &queue);
+        gpu.faults.listen(&device);
+        Ok(gpu)
+    }
+
+    /// Wraps a device that a program has opened itself, as for a window. Its limits should be those
+    /// of the adapter. The program keeps the callbacks of the device, so it has to report a loss by
+    /// [`Gpu::report_loss`].
+    pub fn of_program(adapter: &wgpu::Adapter, device: &wgpu::Device, queue: &wgpu::Queue) -> Self {
+        Self {
+            device: device.clone(),
+            queue: queue.clone(),
             info: AdapterInfo::of(&adapter.get_info()),
-            timestamps: !wanted.is_empty(),
-            faults,
-        })
+            timestamps: device.features().contains(wgpu::Features::TIMESTAMP_QUERY),
+            faults: Arc::new(Faults::default()),
+        }
+    }
+
+    /// The device that [`Gpu::new`] opens on an adapter.
+    pub fn descriptor(adapter: &wgpu::Adapter) -> wgpu::DeviceDescriptor<'static> {
+        descriptor(adapter, adapter.limits())
+    }
+
+    /// Records that the device of a program is lost: all calls from now on fail.
+    pub fn report_loss(&self, message: &str) {
+        lock(&self.faults.lost).get_or_insert_with(|| message.to_owned());
     }
 
     /// The description of the adapter.
@@ -97,6 +106,12 @@ impl Gpu {
         let binding = limits.max_storage_buffer_binding_size;
         at_most(what, bytes, "maxStorageBufferBindingSize", binding)?;
         at_most(what, bytes, "maxBufferSize", limits.max_buffer_size)
+    }
+
+    /// Refuses textures that are larger than those of the adapter.
+    pub(crate) fn has_texture_side(&self, side: u32) -> Result<(), RenderError> {
+        let limit = self.device.limits().max_texture_dimension_2d;
+        at_most("a picture", side.into(), "maxTextureDimension2D", limit.into())
     }
 
     /// Refuses more workgroups in a row than the adapter can run.
@@ -160,6 +175,17 @@ impl Gpu {
     /// leaves nothing of this crate half-changed, since results are read only after the wait.
     fn poll(&self, poll: wgpu::PollType) -> Option<Result<wgpu::PollStatus, wgpu::PollError>> {
         catch_unwind(AssertUnwindSafe(|| self.device.poll(poll))).ok()
+    }
+}
+
+fn descriptor(adapter: &wgpu::Adapter, limits: wgpu::Limits) -> wgpu::DeviceDescriptor<'static> {
+    wgpu::DeviceDescriptor {
+        label: Some("sdfc"),
+        // Timestamps at the borders of a pass need no further feature.
+        required_features: adapter.features() & wgpu::Features::TIMESTAMP_QUERY,
+        // All limits of the adapter, because the default buffer sizes are smaller.
+        required_limits: limits,
+        ..wgpu::DeviceDescriptor::default()
     }
 }
 

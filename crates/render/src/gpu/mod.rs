@@ -3,6 +3,7 @@
 mod culling;
 mod culling_layout;
 mod device;
+mod display;
 mod injection;
 mod kernel;
 mod pipeline;
@@ -11,4 +12,5 @@ mod run;
 pub mod testing;
 
 pub use device::Gpu;
+pub use display::{DeviceTexture, Display};
 pub use pipeline::Pipeline;

@@ -4,15 +4,16 @@ use std::{borrow::Cow, sync::Mutex, time::Instant};
 
 use super::culling::{self, Culling};
 use super::device::Gpu;
+use super::display::{DeviceTexture, Display};
 use super::kernel::Kernel;
 use super::resources::{FIRST_TABLE, WORKGROUP, compute_pipeline, entry, table};
-use super::run::{BESIDE_PIXELS, Buffers, Moment, Run};
+use super::run::{BESIDE_PIXELS, Buffers, Moment, Output, Run};
 use crate::blocks::{PIXEL_BYTES, UNIFORM_BYTES, VIEW_BYTES, uniform_bytes};
 use crate::clock::{Clock, milliseconds_since};
 use crate::error::RenderError;
 use crate::frame::{Frame, OnProgress, Progress, RenderOptions, region_of};
 use crate::image::Image;
-use crate::tiles::Tiler;
+use crate::tiles::{Tile, TileSize, Tiler};
 use crate::view::View;
 
 /// The maximum number of pixels of a tile: 32 MiB to read back.
@@ -168,20 +169,60 @@ impl Pipeline {
         progress: &mut OnProgress<'_>,
     ) -> Result<Frame, RenderError> {
         let region = region_of(view.size, options)?;
+        let mut image = Image::new(region.size, view.footprint())?;
+        let clock = if self.kernel.gpu.has_timestamps() { Clock::Gpu } else { Clock::Wall };
+        let draw = |run: &mut Run<'_>, tile| run.draw(view, tile, region.origin, &mut image);
+        let drawn = self.tiles(view, uniforms, (region, options.tile_size), progress, draw)?;
+        let DrawnTiles { milliseconds, tiles, culling_evaluations } = drawn;
+        Ok(Frame { image, milliseconds, clock, tiles, culling_evaluations })
+    }
+
+    /// Draws the whole picture into a texture of its size, which stays on the device. Returns the
+    /// time in milliseconds, by the CPU's clock.
+    ///
+    /// # Errors
+    ///
+    /// As [`Pipeline::render`]; [`RenderError::Size`] if the texture has another size than the
+    /// picture. After an error the texture may show a part of it.
+    pub fn show(
+        &self,
+        view: &View,
+        uniforms: &[[f32; 4]],
+        tile_size: TileSize,
+        (display, target): (&Display, &DeviceTexture),
+        progress: &mut OnProgress<'_>,
+    ) -> Result<f64, RenderError> {
+        if target.size() != view.size {
+            return Err(RenderError::Size(view.size));
+        }
+        let draw =
+            |run: &mut Run<'_>, tile| run.display(view, tile, display, target).map(|()| None);
+        let region = (Tile::whole(view.size), tile_size);
+        self.tiles(view, uniforms, region, progress, draw).map(|drawn| drawn.milliseconds)
+    }
+
+    /// Draws a region tile by tile. `draw` returns a tile's time in milliseconds, if the adapter
+    /// measures it.
+    fn tiles(
+        &self,
+        view: &View,
+        uniforms: &[[f32; 4]],
+        (region, tile_size): (Tile, TileSize),
+        progress: &mut OnProgress<'_>,
+        mut draw: impl FnMut(&mut Run<'_>, Tile) -> Result<Option<f64>, RenderError>,
+    ) -> Result<DrawnTiles, RenderError> {
         if uniforms.len() != self.uniform_count {
             let (given, expected) = (uniforms.len(), self.uniform_count);
             return Err(RenderError::UniformCount { given, expected });
         }
-        let mut image = Image::new(region.size, view.footprint())?;
-        let mut tiler = Tiler::new(view.size, region, options.tile_size, self.max_tile_pixels());
-        let clock = if self.kernel.gpu.has_timestamps() { Clock::Gpu } else { Clock::Wall };
+        let mut tiler = Tiler::new(view.size, region, tile_size, self.max_tile_pixels());
         let moment = Moment { uniforms: uniforms.to_vec(), within: view.within };
         let mut run = Run::new(&self.kernel, self.take_buffers(), moment)?;
         let (mut milliseconds, mut tiles, mut done) = (0.0, 0, 0);
         let total = tiler.pixels();
         while let Some(tile) = tiler.next() {
             let start = Instant::now();
-            let gpu_time = run.draw(view, tile, region.origin, &mut image)?;
+            let gpu_time = draw(&mut run, tile)?;
             let elapsed = milliseconds_since(start);
             tiler.took(tile, elapsed);
             milliseconds += gpu_time.unwrap_or(elapsed);
@@ -195,7 +236,7 @@ impl Pipeline {
         if self.kernel.culling.is_some() {
             self.store_buffers(run.into_buffers());
         }
-        Ok(Frame { image, milliseconds, clock, tiles, culling_evaluations })
+        Ok(DrawnTiles { milliseconds, tiles, culling_evaluations })
     }
 
     /// Takes the buffers of the last frame, unless another frame is being drawn with them.
@@ -225,10 +266,17 @@ impl Pipeline {
         let mut run = Run::new(&self.kernel, None, Moment { uniforms, within: None })?;
         run.allocate(WORKGROUP * WORKGROUP, [1, 1])?;
         let empty = vec![0; VIEW_BYTES];
-        run.submit(&empty, [1, 1], 1, 0)?;
+        run.submit(&empty, [1, 1], 1, Output::Copy(0))?;
         // No timeout: compiling thousands of primitives can take a software driver many minutes.
         self.kernel.gpu.wait(None)
     }
+}
+
+/// What was measured while tiles were drawn.
+struct DrawnTiles {
+    milliseconds: f64,
+    tiles: u32,
+    culling_evaluations: u64,
 }
 
 fn bind_group_layout(

@@ -7,6 +7,7 @@ use glam::DVec3;
 use super::culling::{self, ActiveBuffers};
 use super::culling_layout;
 use super::device::Gpu;
+use super::display::{DeviceTexture, Display};
 use super::kernel::Kernel;
 use super::resources::{FIRST_TABLE, WORKGROUP, buffer};
 use crate::blocks::{
@@ -46,6 +47,14 @@ pub(crate) struct Buffers {
     active: Option<ActiveBuffers>,
     /// The moment for which the cells are listed; `None` if they are not.
     listed: Option<Moment>,
+}
+
+/// What happens to the pixels of a tile.
+pub(crate) enum Output<'t> {
+    /// This many are copied for the CPU.
+    Copy(u32),
+    /// They become a part of a texture.
+    Texture { display: &'t Display, target: &'t DeviceTexture, tile: Tile },
 }
 
 /// A frame while it is drawn.
@@ -188,22 +197,38 @@ impl<'a> Run<'a> {
         origin: [u32; 2],
         image: &mut Image,
     ) -> Result<Option<f64>, RenderError> {
-        let count = tile.pixels() as u32;
-        let groups = tile.size.map(|side| side.div_ceil(WORKGROUP));
-        self.allocate(count.max(WORKGROUP * WORKGROUP), groups)?;
-        let cell_groups = self.cells_to_list()?;
-        self.submit(&view_bytes(&view.block(tile)), groups, cell_groups, count)?;
-        self.buffers.listed = Some(self.moment.clone());
+        self.start(view, tile, Output::Copy(tile.pixels() as u32))?;
         self.read(tile, origin, image)
     }
 
-    /// Submits workgroups, the culling before them, and the copy of the pixels that they write.
+    /// Draws a tile into a texture, and waits for it.
+    pub(crate) fn display(
+        &mut self,
+        view: &View,
+        tile: Tile,
+        display: &Display,
+        target: &DeviceTexture,
+    ) -> Result<(), RenderError> {
+        self.start(view, tile, Output::Texture { display, target, tile })?;
+        self.kernel.gpu.wait(Some(TIMEOUT))
+    }
+
+    fn start(&mut self, view: &View, tile: Tile, output: Output<'_>) -> Result<(), RenderError> {
+        let groups = tile.size.map(|side| side.div_ceil(WORKGROUP));
+        self.allocate((tile.pixels() as u32).max(WORKGROUP * WORKGROUP), groups)?;
+        let cell_groups = self.cells_to_list()?;
+        self.submit(&view_bytes(&view.block(tile)), groups, cell_groups, output)?;
+        self.buffers.listed = Some(self.moment.clone());
+        Ok(())
+    }
+
+    /// Submits workgroups, the culling before them, and what happens to the pixels that they write.
     pub(crate) fn submit(
         &self,
         view: &[u8],
         groups: [u32; 2],
         cell_groups: u32,
-        pixels: u32,
+        output: Output<'_>,
     ) -> Result<(), RenderError> {
         let Some(buffers) = &self.buffers.pixels else { return Ok(()) };
         let gpu = &self.kernel.gpu;
@@ -233,23 +258,28 @@ impl<'a> Run<'a> {
                 pass.set_bind_group(0, &buffers.bind_group, &[]);
                 pass.dispatch_workgroups(groups[0], groups[1], 1);
             }
-            let bytes = u64::from(pixels) * PIXEL_BYTES as u64;
-            encoder.copy_buffer_to_buffer(&buffers.storage, 0, &buffers.staging, 0, bytes);
-            if let Some(timestamps) = &self.buffers.timestamps {
-                timestamps.resolve(&mut encoder, &buffers.staging, bytes);
-            }
-            if let Some(active) = &self.buffers.active {
-                let (from, to) = (4 * culling_layout::EVALUATED, bytes + TIMESTAMP_BYTES);
-                encoder.copy_buffer_to_buffer(
-                    &active.counters,
-                    from,
-                    &buffers.staging,
-                    to,
-                    COUNT_BYTES,
-                );
+            match output {
+                Output::Copy(pixels) => self.copy(&mut encoder, buffers, pixels),
+                Output::Texture { display, target, tile } => {
+                    display.write(&mut encoder, tile, &buffers.storage, target);
+                }
             }
             gpu.queue.submit([encoder.finish()]);
         })
+    }
+
+    /// Adds the copies of pixels, times and the count for the CPU.
+    fn copy(&self, encoder: &mut wgpu::CommandEncoder, buffers: &PixelBuffers, pixels: u32) {
+        let bytes = u64::from(pixels) * PIXEL_BYTES as u64;
+        encoder.copy_buffer_to_buffer(&buffers.storage, 0, &buffers.staging, 0, bytes);
+        if let Some(timestamps) = &self.buffers.timestamps {
+            timestamps.resolve(encoder, &buffers.staging, bytes);
+        }
+        if let Some(active) = &self.buffers.active {
+            let (from, to) = (4 * culling_layout::EVALUATED, bytes + TIMESTAMP_BYTES);
+            let (counters, staging) = (&active.counters, &buffers.staging);
+            encoder.copy_buffer_to_buffer(counters, from, staging, to, COUNT_BYTES);
+        }
     }
 
     /// Reads back the pixels of a tile, and its time.

@@ -27,6 +27,8 @@ use std::sync::OnceLock;
 pub use super::injection::LOSE_DEVICE;
 
 use super::device::Gpu;
+use super::display::DeviceTexture;
+use super::resources::buffer;
 use crate::error::RenderError;
 
 /// The environment variable that makes tests fail instead of being ignored if there is no adapter.
@@ -47,6 +49,36 @@ pub fn without_gpu() -> bool {
 /// As [`Gpu::new`].
 pub fn with_storage(bytes: u64) -> Result<Gpu, RenderError> {
     Gpu::with_limits(|limits| wgpu::Limits { max_storage_buffer_binding_size: bytes, ..limits })
+}
+
+/// Copies a picture from the device: red, green, blue and alpha of each pixel.
+///
+/// # Errors
+///
+/// [`RenderError::DeviceLost`].
+pub fn read_texture(gpu: &Gpu, texture: &DeviceTexture) -> Result<Vec<u8>, RenderError> {
+    let [width, height] = texture.size();
+    let row = (4 * width).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+    let usage = wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST;
+    let staging = buffer(gpu, "picture", u64::from(row) * u64::from(height), usage);
+    gpu.scoped("reading a picture", || {
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        let layout = wgpu::TexelCopyBufferLayout {
+            offset: 0,
+            bytes_per_row: Some(row),
+            rows_per_image: None,
+        };
+        let target = wgpu::TexelCopyBufferInfo { buffer: &staging, layout };
+        let size = texture.texture().size();
+        encoder.copy_texture_to_buffer(texture.texture().as_image_copy(), target, size);
+        gpu.queue.submit([encoder.finish()]);
+        staging.slice(..).map_async(wgpu::MapMode::Read, |_| {});
+    })?;
+    gpu.wait(None)?;
+    let refused = |error: wgpu::MapRangeError| RenderError::DeviceLost(error.to_string());
+    let mapped = staging.slice(..).get_mapped_range().map_err(refused)?;
+    let rows = mapped.chunks_exact(row as usize);
+    Ok(rows.flat_map(|row| &row[..4 * width as usize]).copied().collect())
 }
 
 /// Loses the device.

@@ -5,7 +5,7 @@ use glam::DVec3;
 use sdfc_render::Pose;
 
 use super::theme;
-use crate::render::picture::Picture;
+use crate::render::picture::RenderRequest;
 
 /// The near plane at which lines are clipped, as a fraction of the distance to the target.
 const NEAR_PLANE: f64 = 1e-3;
@@ -17,8 +17,7 @@ pub(super) const AXES: [(DVec3, &str, Color32); 3] = [
 ];
 
 /// Draws the bounds over a picture that fills the rectangle, with the picture's camera.
-pub fn show(ui: &Ui, rect: Rect, picture: &Picture) {
-    let request = &picture.request;
+pub fn show(ui: &Ui, rect: Rect, request: &RenderRequest) {
     if let Some(bounds) = request.model.scene.bounds_at(&request.frame) {
         bounding_box(ui, rect, &request.pose, bounds);
     }

@@ -6,9 +6,11 @@ use eframe::egui::{
     self, Color32, ColorImage, Key, PointerButton, Pos2, Rect, Response, RichText, Sense,
     TextureHandle, TextureOptions, Ui, pos2, vec2,
 };
+use eframe::egui_wgpu::RenderState;
 use glam::DVec3;
 use sdfc_render::{CAPPED, HIT};
 
+use super::device_texture::DeviceTextureSlot;
 use super::handle_overlay::HandleOverlay;
 use super::shape_outline::ShapeOutline;
 use super::theme::{self, card};
@@ -30,15 +32,23 @@ const ZOOM_PER_POINT: f64 = -0.0025;
 #[derive(Default)]
 pub struct Canvas {
     texture: Option<TextureHandle>,
+    device_texture: DeviceTextureSlot,
     /// The session's picture count when the texture was made.
     shown: u64,
     last_wheel: Option<Instant>,
+    /// What the wheel zooms at, and where the pointer is.
+    zoomed_at: Option<(DVec3, Pos2)>,
     outline: ShapeOutline,
     handles: HandleOverlay,
     rect: Option<Rect>,
 }
 
 impl Canvas {
+    /// Shows pictures on the device of the window from now on.
+    pub fn show_device_pictures(&mut self, state: RenderState) {
+        self.device_texture = DeviceTextureSlot::new(state);
+    }
+
     /// Shows the picture in the whole space, handles camera input, and requests the next picture.
     /// Returns the position that was clicked, as fractions of the picture.
     pub fn show(&mut self, ui: &mut Ui, session: &mut Session) -> Option<[f64; 2]> {
@@ -46,27 +56,30 @@ impl Canvas {
         self.rect = Some(rect);
         ui.painter().rect_filled(rect, 0.0, theme::of(ui).ground);
         self.refresh(ui, session);
-        let shown = session.picture.as_ref().map_or(rect, |it| shown_at(rect, it.request.size));
-        if let Some(texture) = &self.texture {
+        let shown = session.shown_request().map_or(rect, |it| shown_at(rect, it.size));
+        let moving = session.moving.as_ref().and_then(|it| self.device_texture.show(it));
+        if let Some(texture) = moving.or(self.texture.as_ref().map(TextureHandle::id)) {
             let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
-            ui.painter_at(rect).image(texture.id(), shown, whole, Color32::WHITE);
+            ui.painter_at(rect).image(texture, shown, whole, Color32::WHITE);
         } else {
             waiting(ui, rect, session);
         }
         self.outline.show(ui, [rect, shown], session);
-        if let Some(picture) = session.picture.as_deref().filter(|_| session.show_bounds) {
-            bounds_overlay::show(ui, shown, picture);
+        if let Some(request) = session.shown_request().filter(|_| session.show_bounds) {
+            bounds_overlay::show(ui, shown, request);
         }
         if session.is_view_pending() {
             pending_view(ui, rect, session);
         }
         let flying = camera_input(ui, &response, [rect, shown], session);
-        if zoom_by_wheel(ui, &response, [rect, shown], session) {
+        if zoom_by_wheel(ui, &response, [rect, shown], &mut self.zoomed_at, session) {
             self.last_wheel = Some(Instant::now());
         }
         let recent = self.last_wheel.is_some_and(|last| last.elapsed() < WHEEL_REST);
         if recent {
             ui.ctx().request_repaint_after(WHEEL_REST);
+        } else {
+            self.zoomed_at = None;
         }
         let pressed = ui.input(|input| input.pointer.any_down());
         let playing = session.clock.playing && session.is_animated();
@@ -125,8 +138,8 @@ fn shown_at(space: Rect, [width, height]: [u32; 2]) -> Rect {
 
 /// Says which view is being computed and which one is shown.
 fn pending_view(ui: &Ui, rect: Rect, session: &Session) {
-    let Some(picture) = &session.picture else { return };
-    let (next, shown) = (session.mode.name(), picture.request.mode.name());
+    let Some(request) = session.shown_request() else { return };
+    let (next, shown) = (session.mode.name(), request.mode.name());
     let text = format!("computing {next}…  (this is {shown})");
     let font = egui::TextStyle::Body.resolve(ui.style());
     let at = rect.center_top() + vec2(0.0, 14.0);
@@ -169,12 +182,14 @@ fn camera_input(
     let delta = response.drag_delta();
     let (right, down) = (f64::from(delta.x) / height, f64::from(delta.y) / height);
     let keys = ui.input(|input| input.modifiers);
+    let middle_turns = session.middle_turns;
     if delta != vec2(0.0, 0.0) {
         session.move_camera(|camera| {
             let primary = response.dragged_by(PointerButton::Primary);
+            let turns = primary || middle_turns && response.dragged_by(PointerButton::Middle);
             if primary && keys.alt {
                 camera.look_around(right, down);
-            } else if primary && !keys.shift {
+            } else if turns && !keys.shift {
                 camera.orbit(right, down);
             } else {
                 camera.pan(right, down);
@@ -211,12 +226,14 @@ fn fly(ui: &Ui, session: &mut Session) -> bool {
     true
 }
 
-/// Zooms at the surface under the pointer; beside the shapes, at the depth of the pivot. Returns
-/// true if the camera moved.
+/// Zooms at the surface under the pointer; beside the shapes, at the depth of the pivot. Further
+/// turns of the wheel zoom at the same point, until the pointer moves. Returns true if the camera
+/// moved.
 fn zoom_by_wheel(
     ui: &Ui,
     response: &Response,
     [rect, shown]: [Rect; 2],
+    zoomed_at: &mut Option<(DVec3, Pos2)>,
     session: &mut Session,
 ) -> bool {
     let Some(at) = response.hover_pos() else { return false };
@@ -225,11 +242,14 @@ fn zoom_by_wheel(
     if factor == 1.0 {
         return false;
     }
-    if shown.contains(at)
-        && let Some(info) = session.pixel_info(fractions(shown, at))
-        && info.status == HIT
-    {
-        session.move_camera(|camera| camera.zoom_at(info.point, factor));
+    let known = zoomed_at.filter(|(_, pointer)| *pointer == at).map(|(point, _)| point);
+    let under = || {
+        let info = session.pixel_info(fractions(shown, at)).filter(|_| shown.contains(at));
+        info.filter(|info| info.status == HIT).map(|info| info.point)
+    };
+    if let Some(point) = known.or_else(under) {
+        *zoomed_at = Some((point, at));
+        session.move_camera(|camera| camera.zoom_at(point, factor));
         return true;
     }
     let half = f64::from(rect.height().max(1.0)) / 2.0;

@@ -62,9 +62,7 @@ impl HandleOverlay {
     /// Shows the handles, and changes the values of one that is dragged.
     pub fn show(&mut self, ui: &mut Ui, [rect, shown]: [Rect; 2], session: &mut Session) {
         let handles = session.value_handles();
-        let Some(pose) = session.picture.as_ref().map(|picture| picture.request.pose) else {
-            return;
-        };
+        let Some(pose) = session.shown_request().map(|request| request.pose) else { return };
         let mut is_dragged = false;
         for (index, handle) in handles.iter().enumerate() {
             let Some(arrow) = Arrow::new(&pose, shown, handle) else { continue };

@@ -7,6 +7,7 @@ mod bounds_overlay;
 mod canvas;
 mod code;
 mod controls;
+mod device_texture;
 mod diagnostics_overlay;
 mod examples_dialog;
 mod export_dialog;
@@ -37,3 +38,4 @@ mod window_events;
 
 pub use root::App;
 pub use window::{LOSE_WINDOW, WindowError, run};
+pub use window_events::DRAW_ON_WINDOW;

@@ -5,6 +5,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use eframe::egui::{self, Context, Ui};
+use eframe::egui_wgpu::RenderState;
 
 use super::action::Action;
 use super::canvas::Canvas;
@@ -22,6 +23,7 @@ use super::{
     controls, help, hints, missing_file, path_dialog, scene_menu, shortcuts, status_bar, theme,
     toolbar,
 };
+use crate::render::window_device::WindowDevice;
 use crate::session::Session;
 use crate::settings::Settings;
 use crate::unsaved_texts::{UnsavedScene, UnsavedTexts};
@@ -78,6 +80,7 @@ impl App {
         let wake = move || current_context(&shared).request_repaint();
         let mut session = Session::open(path, Arc::new(wake))?;
         session.format_on_save = settings.format_on_save;
+        session.middle_turns = settings.middle_turns;
         let owns_stored_texts = restore(&settings, settings_path.as_deref(), &mut session);
         Ok(Self {
             session,
@@ -108,6 +111,7 @@ impl App {
         apply_theme(ctx, &self.settings);
         // Textures were lost with the device.
         self.canvas = Canvas::default();
+        self.session.set_window_device(None);
         self.code_editor.move_to_window();
         self.examples.move_to_window();
         let mut context = self.context.lock().unwrap_or_else(PoisonError::into_inner);
@@ -116,6 +120,13 @@ impl App {
         drop(context);
         let text = "the GPU that showed the window was lost: this is a new window";
         self.session.messages.push(text.to_owned());
+    }
+
+    /// Shows pictures of a moving camera without a copy on the CPU, if the window's device can draw
+    /// them.
+    pub(super) fn draw_on_window(&mut self, state: &RenderState, device: WindowDevice) {
+        self.canvas.show_device_pictures(state.clone());
+        self.session.set_window_device(Some(device));
     }
 
     /// Stores the settings when the window closes, and the unsaved texts unless the user chose to
@@ -167,7 +178,7 @@ impl App {
 
     /// Returns true if no finer picture follows.
     pub fn picture_is_finished(&self) -> bool {
-        self.session.picture.as_ref().is_some_and(|picture| picture.finished)
+        self.session.known_picture().is_some_and(|picture| picture.finished)
     }
 
     /// Draws one frame of the window.
@@ -338,7 +349,9 @@ impl App {
         let Some(path) = self.settings_path.clone() else { return };
         let session = &self.session;
         let (light, format_on_save) = (self.settings.light, session.format_on_save);
-        let mut settings = Settings { light, format_on_save, ..Settings::read(&path) };
+        let middle_turns = session.middle_turns;
+        let mut settings =
+            Settings { light, format_on_save, middle_turns, ..Settings::read(&path) };
         let params = session.param_values.params.clone();
         settings.record(session.path(), session.manual_camera(), params);
         let size = ctx.input(|input| input.viewport().inner_rect.map(|rect| rect.size().into()));

@@ -28,8 +28,8 @@ pub enum Choice {
 }
 
 /// Shows the scene's name as a button that opens the menu.
-pub fn show(ui: &mut Ui, session: &Session, settings: &mut Settings) -> Option<Choice> {
-    let path = session.path();
+pub fn show(ui: &mut Ui, session: &mut Session, settings: &mut Settings) -> Option<Choice> {
+    let path = &session.path().to_owned();
     let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let mut choice = None;
     let button = (RichText::new(&name).strong(), RichText::new("▾").monospace());
@@ -67,6 +67,9 @@ pub fn show(ui: &mut Ui, session: &Session, settings: &mut Settings) -> Option<C
         if light.on_hover_text("Dark text on light panels.").clicked() {
             theme::set_light(ui.ctx(), settings.light);
         }
+        let text = "A drag with the middle button turns the camera, and with Shift it moves the \
+                    camera, as in Blender.";
+        ui.checkbox(&mut session.middle_turns, "Middle button turns").on_hover_text(text);
     });
     // The arrow is no part of the name.
     menu.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));

@@ -5,7 +5,7 @@ use sdfc_render::Clock;
 
 use super::theme;
 use crate::render::pacing::PASS_BUDGET_MS;
-use crate::render::picture::Picture;
+use crate::render::picture::{MovingPicture, Picture};
 
 use crate::scene::model::{BuildTimes, Model};
 use crate::session::Session;
@@ -18,7 +18,7 @@ const WIDE: f32 = 760.0;
 pub fn show(ui: &mut Ui, session: &mut Session, message: Option<&str>, hint: &str) {
     ui.horizontal(|ui| {
         if let Some(picture) = session.picture.as_deref() {
-            metrics(ui, picture);
+            metrics(ui, picture, session.moving.as_ref());
         }
         refinement(ui, session);
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
@@ -61,7 +61,7 @@ fn export_progress(ui: &mut Ui, session: &Session) {
     ui.add(bar).on_hover_text("Drawing a picture to export.");
 }
 
-fn metrics(ui: &mut Ui, picture: &Picture) {
+fn metrics(ui: &mut Ui, picture: &Picture, moving: Option<&MovingPicture>) {
     let color = theme::of(ui).weak;
     let weak = |text: String| RichText::new(text).small().color(color);
     let model = &picture.request.model;
@@ -80,7 +80,8 @@ fn metrics(ui: &mut Ui, picture: &Picture) {
          {:.1} ms from the request to the picture.",
         picture.milliseconds, picture.latency
     );
-    ui.label(weak(format!("{:.1} ms", picture.milliseconds))).on_hover_text(text);
+    let shown = moving.map_or(picture.milliseconds, |moving| moving.milliseconds);
+    ui.label(weak(format!("{shown:.1} ms"))).on_hover_text(text);
     let evaluations = picture.evaluations;
     let text = format!(
         "Mean number of field evaluations per pixel, shadows and reflections included.\n\

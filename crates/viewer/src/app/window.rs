@@ -122,10 +122,15 @@ fn run_window(
     let create: eframe::AppCreator<'_> = Box::new(move |creation| {
         let ctx = &creation.egui_ctx;
         events.listen(creation);
-        match &mut *shared.borrow_mut() {
+        let mut app = shared.borrow_mut();
+        match &mut *app {
             Some(app) => app.move_to_window(ctx),
             none => *none = Some(App::new(ctx, path, settings_path)?),
         }
+        if let (Some(app), Some((state, device))) = (&mut *app, events.drawing_device()) {
+            app.draw_on_window(state, device);
+        }
+        drop(app);
         let (app, events) = (Rc::clone(shared), Arc::clone(events));
         Ok(Box::new(WindowApp { app, events }))
     });

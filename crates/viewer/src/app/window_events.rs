@@ -5,11 +5,16 @@ use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 use std::time::Duration;
 
 use eframe::egui::Context;
-use eframe::egui_wgpu::{RenderState, SurfaceErrorAction, WgpuConfiguration};
-use eframe::wgpu::{CurrentSurfaceTexture, PollType};
+use eframe::egui_wgpu::{RenderState, SurfaceErrorAction, WgpuConfiguration, WgpuSetup};
+use eframe::wgpu::{Backend, CurrentSurfaceTexture, DeviceType, PollType};
+use sdfc_render::Gpu;
+
+use crate::render::window_device::WindowDevice;
 
 /// The delay before drawing again on a surface that could not be drawn on.
 const RETRY_DELAY: Duration = Duration::from_millis(100);
+/// The environment variable that makes the window's device draw the scene (`1`), or not (`0`).
+pub const DRAW_ON_WINDOW: &str = "SDFC_DRAW_ON_WINDOW";
 /// The longest wait for the device to finish its work.
 const DEVICE_TIMEOUT: Duration = Duration::from_secs(5);
 
@@ -20,6 +25,8 @@ pub struct WindowEvents {
     context: OnceLock<Context>,
     /// Kept with its queue, without which a device does not report that it is lost.
     state: OnceLock<RenderState>,
+    /// The same device, if it draws the scene too.
+    gpu: OnceLock<Gpu>,
 }
 
 #[derive(Debug, Default)]
@@ -37,8 +44,9 @@ impl WindowEvents {
         let device = &self.state.get_or_init(|| state.clone()).device;
         // The device owns the callbacks and these events hold the device, hence weak references.
         let [lost, failed] = [Arc::downgrade(self), Arc::downgrade(self)];
-        device.set_device_lost_callback(move |_, _| {
+        device.set_device_lost_callback(move |_, message| {
             if let Some(events) = lost.upgrade() {
+                events.gpu.get().iter().for_each(|gpu| gpu.report_loss(&message));
                 events.recorded().device_lost = true;
                 events.request_frame();
             }
@@ -52,6 +60,23 @@ impl WindowEvents {
     /// The device that shows the window; `None` with OpenGL.
     pub fn state(&self) -> Option<&RenderState> {
         self.state.get()
+    }
+
+    /// The device that shows the window, if the scene is drawn on it: if it is that of a GPU. With
+    /// a software driver, the copy of a picture costs little, and with a separate device, the frames
+    /// of the window do not wait for the rays.
+    pub fn drawing_device(&self) -> Option<(&RenderState, WindowDevice)> {
+        let state = self.state()?;
+        let info = state.adapter.get_info();
+        let has_compute = matches!(info.backend, Backend::Vulkan | Backend::Metal | Backend::Dx12);
+        let is_wanted = match std::env::var(DRAW_ON_WINDOW).as_deref() {
+            Ok("1") => true,
+            Ok("0") => false,
+            Ok(_) | Err(_) => info.device_type != DeviceType::Cpu,
+        };
+        let open = || Gpu::of_program(&state.adapter, &state.device, &state.queue);
+        let shares = has_compute && is_wanted;
+        shares.then(|| (state, WindowDevice::new(self.gpu.get_or_init(open).clone())))
     }
 
     /// Takes out the messages for the status line.
@@ -120,7 +145,12 @@ pub fn wgpu_options(events: &Arc<WindowEvents>) -> WgpuConfiguration {
             SurfaceErrorAction::SkipFrame
         }
     });
-    WgpuConfiguration { on_surface_status, ..Default::default() }
+    let mut options = WgpuConfiguration { on_surface_status, ..Default::default() };
+    if let WgpuSetup::CreateNew(setup) = &mut options.wgpu_setup {
+        // All limits of the adapter: the device may draw the scene too.
+        setup.device_descriptor = Arc::new(Gpu::descriptor);
+    }
+    options
 }
 
 #[cfg(test)]

@@ -134,6 +134,7 @@ impl<R: FnMut(CompileReport)> ModelBuilder<R> {
             self.device_generation = request.device_generation;
             self.engines.drop_devices();
         }
+        self.engines.set_window(request.window_device.as_ref());
         if !self.build_from_file(request) {
             self.rebuild_shown(request);
         }
@@ -362,6 +363,7 @@ impl<R: FnMut(CompileReport)> ModelBuilder<R> {
             read_at,
             build_times,
             pipelines: self.engines.pipelines,
+            on_window: self.engines.draw_on_window(),
             serial: self.last_serial,
             content_id: id,
             device_generation: request.device_generation,

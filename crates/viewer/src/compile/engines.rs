@@ -13,6 +13,7 @@ use sdfc_codegen::{Shader, render_module_with_camera};
 use sdfc_graph::Program;
 use sdfc_render::{CpuScene, Gpu, Pipeline, RenderError, milliseconds_since};
 
+use crate::render::window_device::WindowDevice;
 use crate::scene::model::{BuildTimes, Engine};
 
 /// A scene that is ready to be drawn.
@@ -78,6 +79,8 @@ impl ShaderLists {
 pub struct Engines {
     running: Option<RunningPipeline>,
     devices: [Option<Gpu>; 2],
+    /// The device of the window, which then draws in place of the others.
+    window: Option<WindowDevice>,
     /// Index of the device that the running pipeline is on.
     drawing_device: usize,
     /// The number of pipelines made so far.
@@ -137,8 +140,12 @@ impl Engines {
         Ok(Some(PreparedEngine::new(Engine::Gpu(pipeline), marched, None)))
     }
 
-    /// Switches to the device that is not drawing, and opens it if needed.
+    /// Switches to the device that is not drawing, and opens it if needed. The device of a window
+    /// is that of a GPU, whose driver can compile while it draws.
     fn next_device(&mut self) -> Result<Gpu, RenderError> {
+        if let Some(window) = &self.window {
+            return Ok(window.gpu().clone());
+        }
         self.drawing_device = (self.drawing_device + 1) % self.devices.len();
         let device = &mut self.devices[self.drawing_device];
         if let Some(gpu) = device {
@@ -149,9 +156,22 @@ impl Engines {
         Ok(gpu)
     }
 
+    /// Draws on the device of the window from now on, or on devices without a window.
+    pub fn set_window(&mut self, window: Option<&WindowDevice>) {
+        if self.window.as_ref() != window {
+            self.drop_devices();
+            self.window = window.cloned();
+        }
+    }
+
+    /// True if the device of the window draws.
+    pub fn draw_on_window(&self) -> bool {
+        self.window.is_some()
+    }
+
     /// Returns true if a device is open, which may be lost by now.
     pub fn has_devices(&self) -> bool {
-        self.devices.iter().any(Option::is_some)
+        self.window.is_some() || self.devices.iter().any(Option::is_some)
     }
 
     /// Drops the devices and the running pipeline; new devices are opened when needed.

@@ -8,6 +8,7 @@ use std::time::Instant;
 use sdfc::CompileValues;
 
 use crate::compile::diagnostics::SceneDiagnostics;
+use crate::render::window_device::WindowDevice;
 use crate::scene::document::TextsByPath;
 use crate::scene::model::Model;
 
@@ -30,6 +31,8 @@ pub struct BuildRequest {
     pub parallel: Option<bool>,
     /// True if the CPU draws even though there may be a GPU.
     pub on_cpu: bool,
+    /// The device of the window, if it draws the scene too.
+    pub window_device: Option<WindowDevice>,
     /// The number of times that new devices were opened because one was lost.
     pub device_generation: u32,
 }
@@ -46,6 +49,7 @@ impl BuildRequest {
             values: CompileValues::new(),
             parallel: None,
             on_cpu: false,
+            window_device: None,
             device_generation: 0,
         }
     }

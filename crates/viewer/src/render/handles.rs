@@ -28,6 +28,8 @@ const MIN_SPEED: f64 = 0.02;
 const MIN_FITTED: usize = 6;
 /// The largest part of the squared speeds that a translation may leave unexplained.
 const MAX_UNEXPLAINED: f64 = 0.05;
+/// A handle stays near its point as long as that is this good, as a fraction of the best point.
+const GOOD_ENOUGH: f64 = 0.4;
 /// Keeps the fit defined if not all directions are seen, as a fraction of the matrix.
 const REGULARISATION: f64 = 1e-6;
 
@@ -36,17 +38,20 @@ const REGULARISATION: f64 = 1e-6;
 pub struct HandleRequest {
     surface: SurfacePoints,
     params: Vec<LiveParam>,
+    /// Where the handles of the values are shown, if they are.
+    shown: Vec<Option<DVec3>>,
     /// The values in the picture, in the order of the params.
     pub start: Vec<f64>,
 }
 
 impl HandleRequest {
-    /// A question about the surface in a picture.
-    pub fn new(picture: &Picture, params: Vec<LiveParam>) -> Self {
+    /// A question about the surface in a picture. Handles stay near the points where those of the
+    /// values are `shown`.
+    pub fn new(picture: &Picture, params: Vec<LiveParam>, shown: Vec<Option<DVec3>>) -> Self {
         let lanes = &picture.request.frame.params;
         let value = |param: &LiveParam| lanes.get(param.index).map_or(0.0, |it| it[0]) * param.sign;
         let start = params.iter().map(value).collect();
-        Self { surface: SurfacePoints::new(picture), params, start }
+        Self { surface: SurfacePoints::new(picture), params, shown, start }
     }
 
     /// The request that the picture answers.
@@ -97,8 +102,12 @@ pub struct Handles {
 impl Handles {
     fn new(request: HandleRequest, interrupted: IsInterrupted<'_>) -> Self {
         let points = request.points();
-        let handle = |param: &LiveParam| handle_of(&request, *param, &points, interrupted);
-        let handles = request.params.iter().map(handle).collect();
+        let shown = request.shown.iter().copied().chain(std::iter::repeat(None));
+        let values = request.params.iter().zip(shown);
+        let handle = |(param, shown): (&LiveParam, _)| {
+            handle_of(&request, (*param, shown), &points, interrupted)
+        };
+        let handles = values.map(handle).collect();
         Self { request, handles }
     }
 }
@@ -113,7 +122,7 @@ struct Moving {
 
 fn handle_of(
     request: &HandleRequest,
-    param: LiveParam,
+    (param, shown): (LiveParam, Option<DVec3>),
     points: &[[DVec3; 2]],
     interrupted: IsInterrupted<'_>,
 ) -> Option<Handle> {
@@ -142,7 +151,8 @@ fn handle_of(
     let fastest = moving.iter().map(|it| it.speed.abs()).fold(0.0, f64::max);
     moving.retain(|it| it.speed.abs() > (MIN_SPEED * fastest).max(1e-9));
     let origin = DVec3::from(model.scene.drawn().origin);
-    let handle = translation(&moving).or_else(|| along_normal(&moving))?;
+    let shown = shown.map(|shown| shown - origin);
+    let handle = translation(&moving).or_else(|| along_normal(&moving, shown))?;
     (!interrupted()).then_some(Handle { origin: handle.origin + origin, ..handle })
 }
 
@@ -167,10 +177,17 @@ fn translation(moving: &[Moving]) -> Option<Handle> {
     Some(Handle { origin: nearest.point, motion, is_translation: true })
 }
 
-/// A handle at a fast point whose normal is seen from the side.
-fn along_normal(moving: &[Moving]) -> Option<Handle> {
+/// A handle at a fast point whose normal is seen from the side. If a handle is shown, it is at the
+/// nearest point to that one which is not much worse.
+fn along_normal(moving: &[Moving], shown: Option<DVec3>) -> Option<Handle> {
     let seen = |it: &Moving| it.speed.abs() * (0.2 + it.normal.cross(it.ray).length());
     let best = moving.iter().max_by(|a, b| seen(a).total_cmp(&seen(b)))?;
+    let nearest = shown.and_then(|shown| {
+        let good = moving.iter().filter(|it| seen(it) >= GOOD_ENOUGH * seen(best));
+        let distance = |it: &Moving| (it.point - shown).length_squared();
+        good.min_by(|a, b| distance(a).total_cmp(&distance(b)))
+    });
+    let best = nearest.unwrap_or(best);
     let motion = best.normal * best.speed;
     Some(Handle { origin: best.point, motion, is_translation: false })
 }
@@ -234,8 +251,15 @@ mod tests {
         assert!(handle.motion.abs_diff_eq(d, 1e-4) && handle.is_translation, "{handle:?}");
         let grown: Vec<Moving> = normals().map(|n| moving(n, 1.0)).collect();
         assert_eq!(translation(&grown), None);
-        let handle = along_normal(&grown).unwrap();
+        let handle = along_normal(&grown, None).unwrap();
         assert!(handle.motion.abs_diff_eq(handle.origin, 1e-12), "{handle:?}");
+        // It stays where it is shown, although another point is as good.
+        let shown = DVec3::new(-handle.origin.x, -handle.origin.y, handle.origin.z) * 1.1;
+        let stays = along_normal(&grown, Some(shown)).unwrap();
+        assert!((stays.origin - shown).length() < 0.2, "{stays:?}");
+        // A point that faces the eye is too bad.
+        let away = along_normal(&grown, Some(DVec3::Z)).unwrap();
+        assert!((away.origin - DVec3::Z).length() > 0.1, "{away:?}");
         // If only one side is seen, from the front, the fit finds only the motion towards the eye.
         let side: Vec<Moving> = (0..9).map(|_| moving(DVec3::Z, 2.0)).collect();
         let handle = translation(&side).unwrap();

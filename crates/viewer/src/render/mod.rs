@@ -7,4 +7,5 @@ pub mod pixel_info;
 pub mod shape_mask;
 pub mod surface_points;
 pub mod view_painter;
+pub mod window_device;
 pub mod worker;

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use sdfc::FrameValues;
-use sdfc_render::{Clock, EvaluationCounts, Image, PixelCounts, Pose, View};
+use sdfc_render::{Clock, DeviceTexture, EvaluationCounts, Image, PixelCounts, Pose, View};
 
 use crate::scene::model::Model;
 use crate::views::legend::Legend;
@@ -89,11 +89,29 @@ pub struct Picture {
     pub counts: PixelCounts,
 }
 
+/// A picture of something that moves, which stays on the device of the window. Nothing of it is
+/// known on the CPU.
+#[derive(Clone, Debug)]
+pub struct MovingPicture {
+    /// The request that it answers.
+    pub request: Arc<RenderRequest>,
+    /// The picture.
+    pub texture: DeviceTexture,
+    /// The requested width and height are divided by this.
+    pub divisor: u32,
+    /// Milliseconds to draw one ray per pixel, by the CPU's clock.
+    pub milliseconds: f64,
+    /// Milliseconds from receiving the request to reporting the picture.
+    pub latency: f64,
+}
+
 /// A report of the render worker.
 #[derive(Debug)]
 pub enum RenderEvent {
     /// A picture, which a finer one may follow.
     Picture(Box<Picture>),
+    /// A picture that stays on the device, until another one of any kind follows.
+    Moving(MovingPicture),
     /// The request could not be drawn.
     Failed {
         /// Why.

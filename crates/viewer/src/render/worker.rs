@@ -17,14 +17,15 @@ use std::time::{Duration, Instant};
 
 use sdfc::Error;
 use sdfc_render::{
-    EvaluationCounts, Frame, Image, Progress, RenderError, RenderOptions, TileSize, View,
+    EvaluationCounts, Frame, Image, Pipeline, Progress, RenderError, RenderOptions, TileSize, View,
     milliseconds_since, sample_offsets, uniform_values,
 };
 
 use crate::latest_channel::LatestChannel;
 use crate::render::pacing::{PASS_BUDGET_MS, Pacing};
-use crate::render::picture::{Picture, RenderEvent, RenderRequest};
+use crate::render::picture::{MovingPicture, Picture, RenderEvent, RenderRequest};
 use crate::render::view_painter::{ColoredView, first_stride, paint};
+use crate::render::window_device::DevicePictures;
 use crate::scene::field_probe::IsInterrupted;
 use crate::scene::model::Engine;
 use crate::views::input::ViewInput;
@@ -36,6 +37,8 @@ use crate::worker_thread::WorkerThread;
 const FIRST_PASS_LIMIT: Duration = Duration::from_millis(300);
 /// Milliseconds per tile; a newer request is noticed between tiles.
 const TILE_MS: f64 = 16.0;
+/// Milliseconds per tile on the device of the window, whose frames wait for a tile.
+const WINDOW_TILE_MS: f64 = 8.0;
 /// A view that is computed for all pixels within this time, in milliseconds, is shown at once.
 const QUICK_VIEW_MS: f64 = 60.0;
 /// The longest time spent on more samples per pixel, in milliseconds. Edges are smooth long before.
@@ -80,6 +83,15 @@ enum Stop {
     Error(Error),
 }
 
+impl From<RenderError> for Stop {
+    fn from(error: RenderError) -> Self {
+        match error == RenderError::Cancelled {
+            true => Self::Superseded,
+            false => Self::Error(error.into()),
+        }
+    }
+}
+
 /// The finest image of the last request.
 struct DrawnImage {
     request: Arc<RenderRequest>,
@@ -101,6 +113,8 @@ struct RenderState<R> {
     report: R,
     drawn: Option<DrawnImage>,
     pacing: Pacing,
+    /// For pictures that stay on the device of the window.
+    on_window: Option<DevicePictures>,
     /// The pixels of the window per pixel of the last picture with the request's rays and view.
     shown_scale: Option<u32>,
     started: Instant,
@@ -109,7 +123,8 @@ struct RenderState<R> {
 impl<R: FnMut(RenderEvent)> RenderState<R> {
     fn new(requests: Arc<LatestChannel<RenderRequest>>, report: R) -> Self {
         let (pacing, started) = (Pacing::default(), Instant::now());
-        Self { requests, report, drawn: None, pacing, shown_scale: None, started }
+        let (drawn, on_window, shown_scale) = (None, None, None);
+        Self { requests, report, drawn, pacing, on_window, shown_scale, started }
     }
 
     /// Handles a request. A panic in a driver is reported and does not end the thread.
@@ -142,6 +157,11 @@ impl<R: FnMut(RenderEvent)> RenderState<R> {
             self.report_picture(&request, false)?;
         } else {
             (self.drawn, self.shown_scale) = (None, None);
+            if let Engine::Gpu(pipeline) = &request.model.engine
+                && stays_on_device(&request)
+            {
+                return self.show_moving(&request, pipeline);
+            }
             let pixels = f64::from(request.size[0]) * f64::from(request.size[1]);
             let first = self.pacing.first_divisor(request.model.serial, pixels);
             self.pass(&request, first, false)?;
@@ -161,6 +181,38 @@ impl<R: FnMut(RenderEvent)> RenderState<R> {
         Ok(())
     }
 
+    /// Draws a picture of something that moves, and leaves it on the device of the window.
+    fn show_moving(
+        &mut self,
+        request: &Arc<RenderRequest>,
+        pipeline: &Pipeline,
+    ) -> Result<(), Stop> {
+        let (start, gpu) = (Instant::now(), pipeline.gpu());
+        let pixels = f64::from(request.size[0]) * f64::from(request.size[1]);
+        let divisor = self.pacing.first_divisor(request.model.serial, pixels);
+        let view = view(request, divisor)?;
+        if !self.on_window.as_ref().is_some_and(|pictures| pictures.are_on(gpu)) {
+            self.on_window = Some(DevicePictures::new(gpu)?);
+        }
+        let Some(pictures) = &mut self.on_window else { return Ok(()) };
+        let (display, texture) = pictures.next(gpu, view.size)?;
+        let uniforms = uniform_values(request.model.marched(), &request.frame);
+        let tiles = TileSize::Adaptive { milliseconds: WINDOW_TILE_MS };
+        let mut reached = 0.0;
+        let mut progress = |progress: Progress| {
+            reached = progress.done as f64;
+            proceed(start.elapsed() <= FIRST_PASS_LIMIT || !self.requests.is_interrupted())
+        };
+        let shown = pipeline.show(&view, &uniforms, tiles, (display, &texture), &mut progress);
+        self.pacing.record(request.model.serial, milliseconds_since(start), reached);
+        let milliseconds = shown?;
+        let latency = milliseconds_since(self.started);
+        let request = Arc::clone(request);
+        let picture = MovingPicture { request, texture, divisor, milliseconds, latency };
+        (self.report)(RenderEvent::Moving(picture));
+        Ok(())
+    }
+
     /// Draws at a fraction of the resolution and reports the picture.
     fn pass(
         &mut self,
@@ -169,15 +221,9 @@ impl<R: FnMut(RenderEvent)> RenderState<R> {
         interruptible: bool,
     ) -> Result<(), Stop> {
         let start = Instant::now();
-        let size = request.size.map(|side| side.div_ceil(divisor).max(1));
-        let (model, values) = (&request.model, &request.frame);
-        let program = model.scene.drawn();
-        let bounds = model.scene.bounds_at(values);
-        let view = View::from_pose(program, values, bounds, size, &request.pose)
-            .map_err(|error| Stop::Error(error.into()))?
-            .with_scaled_parameter(model.method_parameter(), request.tolerance);
+        let view = view(request, divisor)?;
         let frame = self.frame(request, &view, interruptible)?;
-        let pixels = f64::from(size[0]) * f64::from(size[1]);
+        let pixels = f64::from(view.size[0]) * f64::from(view.size[1]);
         self.pacing.record(request.model.serial, milliseconds_since(start), pixels);
         let (sum, image) = (frame.image.clone(), Arc::new(frame.image.clone()));
         let request = Arc::clone(request);
@@ -201,11 +247,7 @@ impl<R: FnMut(RenderEvent)> RenderState<R> {
         let mut progress = |progress: Progress| {
             reached = progress.done as f64;
             let may_stop = interruptible || start.elapsed() > FIRST_PASS_LIMIT;
-            if may_stop && requests.is_interrupted() {
-                ControlFlow::Break(())
-            } else {
-                ControlFlow::Continue(())
-            }
+            proceed(!(may_stop && requests.is_interrupted()))
         };
         let options =
             RenderOptions { tile_size: TileSize::Adaptive { milliseconds: TILE_MS }, region: None };
@@ -218,12 +260,11 @@ impl<R: FnMut(RenderEvent)> RenderState<R> {
             Engine::Cpu(scene) => scene.render(view, values, model.method, &options, &mut progress),
         };
         result.map_err(|error| {
-            if error != RenderError::Cancelled {
-                return Stop::Error(error.into());
+            if error == RenderError::Cancelled {
+                // The tiles so far tell the cost, so that the next first pass is coarse enough.
+                self.pacing.record(model.serial, milliseconds_since(start), reached);
             }
-            // The tiles so far tell the cost, so that the next first pass is coarse enough.
-            self.pacing.record(model.serial, milliseconds_since(start), reached);
-            Stop::Superseded
+            error.into()
         })
     }
 
@@ -300,6 +341,26 @@ impl<R: FnMut(RenderEvent)> RenderState<R> {
             stride = if is_quick { 1 } else { stride / 2 };
         }
     }
+}
+
+/// Returns true if the window can show the picture without its pixels on the CPU: it moves, and the
+/// view needs no field.
+fn stays_on_device(request: &RenderRequest) -> bool {
+    request.model.on_window && request.moving && request.mode == ViewMode::Shaded
+}
+
+fn proceed(proceed: bool) -> ControlFlow<()> {
+    if proceed { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+}
+
+/// The rays of a request at a fraction of its resolution.
+fn view(request: &RenderRequest, divisor: u32) -> Result<View, Stop> {
+    let size = request.size.map(|side| side.div_ceil(divisor).max(1));
+    let (model, values) = (&request.model, &request.frame);
+    let bounds = model.scene.bounds_at(values);
+    let view = View::from_pose(model.scene.drawn(), values, bounds, size, &request.pose);
+    let view = view.map_err(|error| Stop::Error(error.into()))?;
+    Ok(view.with_scaled_parameter(model.method_parameter(), request.tolerance))
 }
 
 /// Applies the request's view to every `stride`-th pixel.
@@ -391,6 +452,7 @@ mod tests {
         let next = || match events.recv_timeout(TIMEOUT).unwrap() {
             RenderEvent::Picture(picture) => picture,
             RenderEvent::Failed { message, .. } => panic!("{message}"),
+            RenderEvent::Moving(_) => panic!("there is no window"),
         };
         worker.send(request.clone());
         assert_eq!((next().stride, next_is_none(&events)), (1, true));

@@ -66,6 +66,8 @@ pub struct Model {
     pub build_times: BuildTimes,
     /// The number of pipelines made so far.
     pub pipelines: u64,
+    /// True if the device of the window draws it, unless the CPU does.
+    pub on_window: bool,
     /// A number that no other model has; later models have greater ones.
     pub serial: u64,
     /// A number that models of the same source share, however they are drawn.

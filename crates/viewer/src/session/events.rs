@@ -107,8 +107,12 @@ impl Session {
         match event {
             RenderEvent::Picture(picture) => {
                 (self.render_error, self.device_losses) = (None, 0);
-                self.picture = Some(picture);
+                (self.picture, self.moving) = (Some(picture), None);
                 self.picture_count += 1;
+            }
+            RenderEvent::Moving(moving) => {
+                (self.render_error, self.device_losses) = (None, 0);
+                self.moving = Some(moving);
             }
             RenderEvent::Failed { message, machine, device_generation } => {
                 self.render_error = Some(message);

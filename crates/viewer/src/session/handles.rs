@@ -36,22 +36,27 @@ impl Session {
             handles.selected = handles.selected.take().filter(|_| looked_at.is_none());
             handles.looked_at = looked_at;
         }
-        let handles = &mut self.handles;
-        let named = handles.hovered.as_ref().or(handles.selected.as_ref());
+        let named = self.handles.hovered.as_ref().or(self.handles.selected.as_ref());
         let values = match named {
             Some(name) => vec![HandleValue::Param(name.clone())],
-            None => handles.at_cursor.clone(),
+            None => self.handles.at_cursor.clone(),
         };
         let live: Option<Vec<LiveParam>> =
             values.iter().map(|value| value.live_param(&model)).collect();
         let Some(live) = live.filter(|live| !live.is_empty()) else {
-            (handles.asked, handles.answer) = (None, None);
+            (self.handles.asked, self.handles.answer) = (None, None);
             return;
         };
-        let picture = self.picture.as_deref().filter(|picture| {
+        let picture = self.known_picture().filter(|picture| {
             !picture.request.moving && picture.request.model.serial == model.serial
         });
-        let Some(asked) = picture.map(|picture| HandleRequest::new(picture, live)) else { return };
+        let Some(picture) = picture else { return };
+        let shown = self.value_handles();
+        let at = |value: &HandleValue| {
+            shown.iter().find(|it| it.value == *value).map(|it| it.handle.origin)
+        };
+        let asked = HandleRequest::new(picture, live, values.iter().map(at).collect());
+        let handles = &mut self.handles;
         if handles.asked.as_ref().is_some_and(|last| last.is_same(&asked)) {
             return;
         }

@@ -13,7 +13,7 @@ impl Session {
     pub fn light_shapes(&mut self, at: Option<(TabFile, usize)>) {
         let Some((file, offset)) = at else { return self.lit_shapes.clear() };
         // A moving picture is replaced before its shapes are known.
-        let Some(picture) = self.picture.as_deref().filter(|it| !it.request.moving) else { return };
+        let Some(picture) = self.known_picture().filter(|it| !it.request.moving) else { return };
         let model = &picture.request.model;
         let now = (file, offset, model.serial, self.picture_count);
         if self.lit_shapes.looked_at.as_ref() == Some(&now) {
@@ -43,7 +43,7 @@ impl Session {
     /// The pixels of the current picture that show the lit shapes, once they are known.
     pub fn lit_mask(&self) -> Option<&ShapeMask> {
         let (mask, asked) = (self.lit_shapes.mask.as_ref()?, self.lit_shapes.asked.as_ref()?);
-        let is_current = self.picture.as_deref().is_some_and(|it| mask.request.is_about(it));
+        let is_current = self.known_picture().is_some_and(|it| mask.request.is_about(it));
         (is_current && mask.request.is_same(asked)).then_some(mask)
     }
 }

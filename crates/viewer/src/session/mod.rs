@@ -33,9 +33,10 @@ use crate::export::exporter::ExportOutcome;
 use crate::export::worker::ExportWorker;
 use crate::language::worker::{LanguageAnswer, LanguageRequest, LanguageWorker};
 use crate::render::handles::HandleWorker;
-use crate::render::picture::{Picture, RenderEvent, RenderRequest};
+use crate::render::picture::{MovingPicture, Picture, RenderEvent, RenderRequest};
 use crate::render::pixel_info::PixelInfo;
 use crate::render::shape_mask::MaskWorker;
+use crate::render::window_device::WindowDevice;
 use crate::render::worker::RenderWorker;
 use crate::scene::document::{TextsByPath, folders_of, path_of};
 use crate::scene::model::Model;
@@ -76,6 +77,8 @@ pub struct Session {
     pub entry_pictures: SmallPictures<ExampleScene>,
     /// True if a text is formatted when it is saved.
     pub format_on_save: bool,
+    /// True if a drag with the middle button turns the camera, as in Blender.
+    pub middle_turns: bool,
     watcher: FileWatcher,
     /// The request that a change on disk repeats, shared with the watcher's thread.
     repeated_build: Arc<Mutex<BuildRequest>>,
@@ -121,8 +124,10 @@ pub struct Session {
     pub render_error: Option<String>,
     /// True while a pipeline is being made.
     pub building: bool,
-    /// The last picture.
+    /// The last picture whose pixels are known.
     pub picture: Option<Box<Picture>>,
+    /// The newer picture of something that moves, if there is one.
+    pub moving: Option<MovingPicture>,
     lit_shapes: LitShapes,
     /// Handles in the picture.
     pub handles: ValueHandles,
@@ -186,6 +191,7 @@ impl Session {
             language: None,
             entry_pictures,
             format_on_save: false,
+            middle_turns: false,
             watcher,
             repeated_build,
             camera: None,
@@ -210,6 +216,7 @@ impl Session {
             render_error: None,
             building: false,
             picture: None,
+            moving: None,
             lit_shapes,
             handles,
             picture_count: 0,
@@ -255,7 +262,8 @@ impl Session {
             values: CompileValues::new(),
             ..self.build.clone()
         };
-        (self.camera, self.model, self.picture, self.last_request) = (None, None, None, None);
+        (self.camera, self.model, self.last_request) = (None, None, None);
+        (self.picture, self.moving) = (None, None);
         (self.param_values, self.clock) = (ParamValues::default(), Clock::default());
         (self.diagnostics, self.problem, self.render_error) =
             (SceneDiagnostics::default(), None, None);
@@ -340,9 +348,22 @@ impl Session {
         }
     }
 
+    /// The request that the shown picture answers.
+    pub fn shown_request(&self) -> Option<&RenderRequest> {
+        let moving = self.moving.as_ref().map(|moving| &moving.request);
+        moving.or(self.picture.as_ref().map(|picture| &picture.request)).map(Arc::as_ref)
+    }
+
     /// Returns true until the chosen view of the picture is there, if only for some of its pixels.
     pub fn is_view_pending(&self) -> bool {
-        self.picture.as_ref().is_some_and(|picture| picture.request.mode != self.mode)
+        self.shown_request().is_some_and(|request| request.mode != self.mode)
+    }
+
+    /// Draws on the device of the window from now on, or on devices without a window.
+    pub fn set_window_device(&mut self, device: Option<WindowDevice>) {
+        // Its pictures are gone with a lost device.
+        self.moving = None;
+        self.update_build(|build| build.window_device = device);
     }
 
     /// The last request as a comparison job; `None` for a planar picture, which has no rays.
@@ -374,7 +395,7 @@ impl Session {
             picture.finished && last.is_some_and(|last| last.is_same(&picture.request))
         };
         if self.accuracy.automatic
-            && self.picture.as_deref().is_some_and(is_finished)
+            && self.known_picture().is_some_and(is_finished)
             && let Some(job) = self.comparison_job(false)
         {
             self.accuracy.start_if_new(job);
@@ -397,9 +418,14 @@ impl Session {
     }
 
     /// The pixel at a position of the picture, given as fractions of width and height from the
-    /// upper left corner.
+    /// upper left corner. `None` while the pixels of the shown picture are not known.
     pub fn pixel_info(&self, position: [f64; 2]) -> Option<PixelInfo> {
-        PixelInfo::at(self.picture.as_deref()?, position)
+        PixelInfo::at(self.known_picture()?, position)
+    }
+
+    /// The shown picture, if its pixels are known.
+    pub fn known_picture(&self) -> Option<&Picture> {
+        self.picture.as_deref().filter(|_| self.moving.is_none())
     }
 
     /// The path of the file that a diagnostic is about, absolute if the scene's path is.

@@ -42,7 +42,7 @@ impl Session {
     /// The file and the range of its text that make the shape at a position of the picture, given
     /// as in [`pixel_info`](Self::pixel_info). `None` if the text is not that of the picture.
     pub fn code_at(&self, position: [f64; 2]) -> Option<(TabFile, Range<usize>)> {
-        let picture = self.picture.as_deref()?;
+        let picture = self.known_picture()?;
         let (name, range) = PixelInfo::at(picture, position)?.call?;
         let file = self.file_named(&name);
         let compiled = self.compiled_text(&picture.request.model, &file)?;

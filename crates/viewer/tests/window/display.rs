@@ -195,7 +195,17 @@ impl<'a> Window<'a> {
     }
 
     /// Moves the pointer with the button held, as slowly as a user does.
-    pub fn drag(&self, [x, y]: [u32; 2], [right, down]: [i32; 2]) -> Result<(), Failed> {
+    pub fn drag(&self, from: [u32; 2], by: [i32; 2]) -> Result<(), Failed> {
+        self.drag_without_release(from, by)?;
+        self.input(&["mouseup", "1"])
+    }
+
+    /// The part of a drag before the button is released.
+    pub fn drag_without_release(
+        &self,
+        [x, y]: [u32; 2],
+        [right, down]: [i32; 2],
+    ) -> Result<(), Failed> {
         const STEPS: i32 = 6;
         self.input(&["mousemove", &x.to_string(), &y.to_string(), "mousedown", "1"])?;
         for _ in 0..STEPS {
@@ -205,7 +215,7 @@ impl<'a> Window<'a> {
             self.input(&["mousemove_relative", "--", &right, &down])?;
         }
         std::thread::sleep(Duration::from_millis(250));
-        self.input(&["mouseup", "1"])
+        Ok(())
     }
 
     /// Requests closing, as the button of a window manager does.

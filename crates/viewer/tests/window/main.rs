@@ -12,8 +12,9 @@ use std::cell::Cell;
 use std::process::{ExitCode, Stdio};
 use std::time::Duration;
 
+use image::RgbImage;
 use libtest_mimic::{Arguments, Failed, Trial};
-use sdfc_viewer::app::LOSE_WINDOW;
+use sdfc_viewer::app::{DRAW_ON_WINDOW, LOSE_WINDOW};
 
 use display::{
     Display, PICTURE, SIZE, Scene, Window, differ, expect, is_green, is_red, reds, viewer,
@@ -28,7 +29,7 @@ fn main() -> ExitCode {
     let arguments = Arguments::from_args();
     let missing: Vec<&str> = ["Xvfb", "xdotool"].into_iter().filter(|it| !is_there(it)).collect();
     let required = std::env::var_os("SDFC_REQUIRE_GPU").is_some();
-    let trials: [(&str, Test); 15] = [
+    let trials: [(&str, Test); 16] = [
         ("an_edit_is_shown_and_a_broken_scene_keeps_the_picture", edits),
         ("the_camera_follows_the_pointer", camera),
         ("a_deleted_file_is_shown_again_when_it_comes_back", comes_back),
@@ -39,6 +40,7 @@ fn main() -> ExitCode {
         ("the_window_survives_any_size_and_shows_the_newest_scene_after_hiding", sizes),
         ("closing_the_window_stores_the_settings", closing),
         ("a_window_whose_device_is_lost_is_replaced", lost),
+        ("a_moving_picture_is_drawn_on_the_device_of_the_window", on_device),
         ("a_device_loss_within_a_frame_stores_the_settings", lost_midway),
         ("typed_text_survives_a_device_loss", unsaved_text::survives_a_loss_within_a_frame),
         ("an_idle_window_uses_no_cpu_time", idle),
@@ -229,9 +231,17 @@ fn lost(display: Display) -> Result<(), Failed> {
     // More frames than opening and dragging take.
     let window = Window::open_with(&display, &scene, &[(LOSE_WINDOW, "100")])?;
     let before = window.settled(|picture| is_red(picture, ON_SHAPE))?;
-    let lost = window.id()?;
     window.drag(ON_SHAPE, [120, 60])?;
     let turned = window.settled(|picture| differ(picture, &before, PICTURE) > 2000)?;
+    replaced(&window, &turned)?;
+    window.input(&["key", "h"])?;
+    window.settled(|picture| differ(picture, &before, PICTURE) < 200)?;
+    Ok(())
+}
+
+/// Moves the pointer until the device is lost and another window shows the same picture.
+fn replaced(window: &Window<'_>, shown: &RgbImage) -> Result<(), Failed> {
+    let lost = window.id()?;
     // Each move is a frame. Only the new window must get the keyboard: X11 takes it from a window
     // that closes.
     let step = Cell::new(0);
@@ -241,11 +251,31 @@ fn lost(display: Display) -> Result<(), Failed> {
         Ok(window.id().is_ok_and(|id| id != lost))
     })?;
     window.arrange("scene.sdf")?;
-    let other = window.settled(|picture| differ(picture, &turned, PICTURE) < 200)?;
-    window.keep(&other, "replaced")?;
-    window.input(&["key", "h"])?;
-    window.settled(|picture| differ(picture, &before, PICTURE) < 200)?;
-    Ok(())
+    let other = window.settled(|picture| differ(picture, shown, PICTURE) < 200)?;
+    window.keep(&other, "replaced")
+}
+
+/// While the button is down, the picture counts as moving and is drawn coarsely on a slow machine.
+/// When the device is lost, the scene is drawn on the device of the new window.
+fn on_device(display: Display) -> Result<(), Failed> {
+    let scene = Scene::new(&BALL.replace("sphere(1)", "box([1, 1, 1])"))?;
+    let environment = [(DRAW_ON_WINDOW, "1"), (LOSE_WINDOW, "150")];
+    let window = Window::open_with(&display, &scene, &environment)?;
+    let before = window.settled(|picture| is_red(picture, ON_SHAPE))?;
+    let turn = |name, since: &RgbImage| {
+        window.drag_without_release(ON_SHAPE, [120, 60])?;
+        let is_turned = |picture: &RgbImage| differ(picture, since, PICTURE) > 2000;
+        let moving = window.settled(is_turned)?;
+        window.keep(&moving, name)?;
+        window.input(&["mouseup", "1"])?;
+        let turned = window.settled(is_turned)?;
+        let sizes = [&moving, &turned].map(|picture| reds(picture) as f64);
+        expect((sizes[0] / sizes[1] - 1.0).abs() < 0.2, &format!("red pixels: {sizes:?}"))?;
+        Ok::<_, Failed>(turned)
+    };
+    let turned = turn("moving", &before)?;
+    replaced(&window, &turned)?;
+    turn("moving-again", &turned).map(drop)
 }
 
 /// egui cannot continue: the program ends and stores the settings.
