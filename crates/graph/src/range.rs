@@ -23,6 +23,16 @@ impl Range {
         if lo <= hi { Self { lo, hi } } else { Self::ALL }
     }
 
+    /// The largest absolute value.
+    pub fn magnitude(self) -> f64 {
+        self.lo.abs().max(self.hi.abs())
+    }
+
+    /// The smallest absolute value; 0 if the range contains 0.
+    pub fn nearest_to_zero(self) -> f64 {
+        self.lo.max(-self.hi).max(0.0)
+    }
+
     fn of_const(value: &Const) -> Self {
         let lanes = value.lanes();
         hull(lanes[..value.ty().width()].iter().map(|&lane| Self::new(lane, lane)))

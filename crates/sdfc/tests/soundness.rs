@@ -113,6 +113,21 @@ const SCENES: &[(&str, &str)] = &[
         "fn hill(x, y) lipschitz 1 = 0.5 - sin(x) * sin(y)\n\
          solid land(a: solid) = a(p) - 0.25 * (0.1 - hill(1 - p.x, p.y + 2))\nland(sphere(1))",
     ),
+    // Slopes that are limited because the argument is.
+    ("steps", "heightfield(fn(q) = smoothstep(-0.3, 0.4, q.x) + 0.5 * smoothstep(0.5, 0.2, q.y))"),
+    (
+        "steps with an edge by a param",
+        "param k = 0.5 in 0.2..0.9\nheightfield(fn(q) = smoothstep(-k, k, sin(4 * q.x)))",
+    ),
+    ("mix by the point", "heightfield(fn(q) = mix(sin(3 * q.x), cos(q.y), saturate(2 * q.x)))"),
+    (
+        "functions of a limited argument",
+        "heightfield(fn(q) = exp(sin(q.x)) + sqrt(2 + sin(q.y)) + log(1.5 + sin(q.y)) \
+         + asin(0.9 * sin(q.x)) + cosh(sin(q.x)) + inverseSqrt(1.2 + sin(q.y)))",
+    ),
+    ("powers", "heightfield(fn(q) = pow(1 + sin(3 * q.x), 2.5) + pow(1.1 + sin(q.y), 0.3))"),
+    ("quotient", "heightfield(fn(q) = sin(3 * q.x) / (1.2 + sin(2 * q.y)))"),
+    ("ridges in a valley", "heightfield(fn(q) = tanh(q.x) * abs(gradient_noise(vec3(2 * q, 0))))"),
 ];
 
 /// Scenes for which an incorrect rule might derive too small a constant. They need no constant, but
@@ -147,6 +162,13 @@ const LURES: &[(&str, &str)] = &[
         "a list that holds a loop's state",
         "fn apply(l: [number], x: number) lipschitz 1 = x + l[0]\n\
          solid odd() = iterate(40, p.x, fn(s) = clamp(apply([100 * s], p.z), -1, 1))\nodd()",
+    ),
+    ("a root that touches 0", "heightfield(fn(q) = sqrt(1 + sin(q.x)))"),
+    ("a quotient that touches 0", "heightfield(fn(q) = sin(q.x) / (1 + sin(q.y)))"),
+    ("a power that touches 0", "heightfield(fn(q) = pow(1 + sin(q.x), 0.5))"),
+    (
+        "a step whose edges may meet",
+        "param k = 0.5 in -0.5..0.5\nheightfield(fn(q) = smoothstep(0, k, q.x))",
     ),
     (
         "a constant from bounds that is less than 1",

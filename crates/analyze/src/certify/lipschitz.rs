@@ -6,7 +6,8 @@
 
 use rustc_hash::{FxBuildHasher, FxHashMap};
 use sdfc_graph::{
-    Binary, Graph, LoopId, LoopVar, Node, NodeId, ShapeId, SoftExtreme, Stage, Ternary, Unary,
+    Binary, Graph, LoopId, LoopVar, Node, NodeId, Range, ShapeId, SoftExtreme, Stage, Ternary,
+    Unary,
 };
 
 use crate::certify::affine;
@@ -175,7 +176,7 @@ impl Slopes {
             Node::Variable(..) | Node::Loop(..) => Err(Reason::Unbounded("iterate")),
             Node::Element(..) => Err(Reason::Jump("[ ]")),
             Node::Point(..) => Ok(graph.number(1.0)),
-            Node::Unary(op, a) => self.unary(op, a),
+            Node::Unary(op, a) => self.unary(graph, op, a),
             Node::Binary(Binary::Add | Binary::Sub, a, b)
                 if self.components.are_disjoint(&[a, b]) =>
             {
@@ -217,7 +218,11 @@ impl Slopes {
             && arguments.all(is_constant)
     }
 
-    fn unary(&self, op: Unary, a: NodeId) -> Constant {
+    fn unary(&self, graph: &mut Graph, op: Unary, a: NodeId) -> Constant {
+        if let Some(steepest) = steepest_slope(op, graph.range(a)) {
+            let (factor, inner) = (graph.number(steepest), self.constant(a)?);
+            return Ok(graph.mul(factor, inner));
+        }
         match op {
             // 1-Lipschitz functions: |u(x) - u(y)| <= |x - y| in every lane.
             Unary::Neg
@@ -285,10 +290,10 @@ impl Slopes {
                 Ok(hypotenuse(graph, &[x, y]))
             }
             Binary::Mul => self.product(graph, a, b),
-            Binary::Div => Err(Reason::Unbounded("/")),
+            Binary::Div => self.quotient(graph, a, b),
             Binary::Dot => Err(Reason::Unbounded("dot")),
             Binary::Cross => Err(Reason::Unbounded("cross")),
-            Binary::Pow => Err(Reason::Unbounded("pow")),
+            Binary::Pow => self.power(graph, a, b),
             Binary::Atan2 => Err(Reason::Unbounded("atan2")),
             Binary::Rem => Err(Reason::Jump("%")),
             Binary::Step => Err(Reason::Jump("step")),
@@ -303,8 +308,7 @@ impl Slopes {
     /// u|. The two terms are combined by their hypotenuse if the factors depend on different
     /// components of the point.
     fn product(&self, graph: &mut Graph, a: NodeId, b: NodeId) -> Constant {
-        let limit = |id| graph.range(id).lo.abs().max(graph.range(id).hi.abs());
-        let (limit_a, limit_b) = (limit(a), limit(b));
+        let (limit_a, limit_b) = (graph.range(a).magnitude(), graph.range(b).magnitude());
         if !(limit_a.is_finite() && limit_b.is_finite()) {
             return Err(Reason::Unbounded("*"));
         }
@@ -317,12 +321,64 @@ impl Slopes {
         Ok(graph.add(parts[0], parts[1]))
     }
 
+    /// A quotient whose divisor stays away from 0: |(x / y)'| <= |x'| / |y| + |x| |y'| / y^2.
+    fn quotient(&self, graph: &mut Graph, a: NodeId, b: NodeId) -> Constant {
+        let (limit, nearest) = (graph.range(a).magnitude(), graph.range(b).nearest_to_zero());
+        if !(limit.is_finite() && nearest > 0.0) {
+            return Err(Reason::Unbounded("/"));
+        }
+        let (x, y) = (self.constant(a)?, self.constant(b)?);
+        let (above, below) = (1.0 / nearest, limit / (nearest * nearest));
+        let (above, below) = (graph.number(above), graph.number(below));
+        let parts = [graph.mul(x, above), graph.mul(y, below)];
+        Ok(graph.add(parts[0], parts[1]))
+    }
+
+    /// A power with a constant exponent: its slope n x^(n - 1) is steepest at an end of the range.
+    fn power(&self, graph: &mut Graph, a: NodeId, b: NodeId) -> Constant {
+        let (base, exponent) = (graph.range(a), graph.range(b));
+        let n = exponent.lo;
+        let end = if n >= 1.0 { base.hi } else { base.lo };
+        let steepest = n.abs() * end.powf(n - 1.0);
+        if n != exponent.hi || base.lo < 0.0 || !steepest.is_finite() {
+            return Err(Reason::Unbounded("pow"));
+        }
+        let (factor, inner) = (graph.number(steepest), self.constant(a)?);
+        Ok(graph.mul(factor, inner))
+    }
+
+    /// A mix by a t from 0 to 1 that depends on the point: max(La, Lb) + |b - a| Lt, for numbers.
+    fn varying_mix(&self, graph: &mut Graph, [a, b, t]: [NodeId; 3]) -> Constant {
+        let (from, to, share) = (graph.range(a), graph.range(b), graph.range(t));
+        let apart = (to.hi - from.lo).max(from.hi - to.lo);
+        let is_share = share.lo >= 0.0 && share.hi <= 1.0;
+        if !is_share || !apart.is_finite() || graph.ty(a).width() != 1 {
+            return Err(Reason::Unbounded("mix"));
+        }
+        let (x, y, z) = (self.constant(a)?, self.constant(b)?, self.constant(t)?);
+        let (moved, apart) = (graph.max(x, y), graph.number(apart));
+        let turned = graph.mul(apart, z);
+        Ok(graph.add(moved, turned))
+    }
+
+    /// The slope of `smoothstep` is at most 3 / 2 in the middle between two fixed edges.
+    fn smoothstep(&self, graph: &mut Graph, [lo, hi, x]: [NodeId; 3]) -> Constant {
+        let width = graph.sub(hi, lo);
+        if graph.stage(width) == Stage::Point || graph.range(width).nearest_to_zero() <= 0.0 {
+            return Err(Reason::Unbounded("smoothstep"));
+        }
+        let steepest = graph.number(1.5);
+        let steepest = graph.div(steepest, width);
+        let (factor, inner) = (largest_lane(graph, steepest), self.constant(x)?);
+        Ok(graph.mul(factor, inner))
+    }
+
     fn ternary(&self, graph: &mut Graph, op: Ternary, [a, b, c]: [NodeId; 3]) -> Constant {
         match op {
             // |1 - t| La + |t| Lb for a t that does not depend on the point.
             Ternary::Mix => {
                 if graph.stage(c) == Stage::Point {
-                    return Err(Reason::Unbounded("mix"));
+                    return self.varying_mix(graph, [a, b, c]);
                 }
                 let one = graph.number(1.0);
                 let rest = graph.sub(one, c);
@@ -337,7 +393,7 @@ impl Slopes {
                 }
                 self.constant(a)
             }
-            Ternary::Smoothstep => Err(Reason::Unbounded("smoothstep")),
+            Ternary::Smoothstep => self.smoothstep(graph, [a, b, c]),
             Ternary::Select => {
                 if graph.stage(a) == Stage::Point {
                     return Err(Reason::Jump("if"));
@@ -378,4 +434,41 @@ impl Slopes {
         let inner = self.constant(v)?;
         Ok(graph.mul(factor, inner))
     }
+}
+
+/// The steepest slope of a function within a range. `None` if it has none there, or if another rule
+/// holds everywhere.
+fn steepest_slope(op: Unary, range: Range) -> Option<f64> {
+    let steepest = match op {
+        Unary::Sqrt if range.lo > 0.0 => 0.5 / range.lo.sqrt(),
+        Unary::InverseSqrt if range.lo > 0.0 => 0.5 * range.lo.powf(-1.5),
+        Unary::Exp => range.hi.exp(),
+        Unary::Exp2 => std::f64::consts::LN_2 * range.hi.exp2(),
+        Unary::Log if range.lo > 0.0 => 1.0 / range.lo,
+        Unary::Log2 if range.lo > 0.0 => std::f64::consts::LOG2_E / range.lo,
+        Unary::Asin | Unary::Acos => (1.0 - range.magnitude().powi(2)).sqrt().recip(),
+        Unary::Sinh | Unary::Cosh => range.magnitude().cosh(),
+        Unary::Sqrt
+        | Unary::InverseSqrt
+        | Unary::Log
+        | Unary::Log2
+        | Unary::Tan
+        | Unary::Normalize
+        | Unary::Neg
+        | Unary::Abs
+        | Unary::Sign
+        | Unary::Floor
+        | Unary::Ceil
+        | Unary::Round
+        | Unary::Trunc
+        | Unary::Fract
+        | Unary::Sin
+        | Unary::Cos
+        | Unary::Atan
+        | Unary::Tanh
+        | Unary::Saturate
+        | Unary::Length
+        | Unary::Not => return None,
+    };
+    steepest.is_finite().then_some(steepest)
 }
