@@ -14,12 +14,18 @@ struct SurfaceHit {
     evaluations: u32,
 }
 
+// Roughness of the mirror before the current hit, which spreads the highlights that it shows.
+var<private> blur: f32;
+
 fn shade_hit(view_ray: Ray, found: Trace) -> SurfaceHit {
     var hit: SurfaceHit;
     hit.trace = found;
     hit.evaluations = found.evaluations;
     if found.status == HIT {
         hit.surface = surface_at(view_ray, found.t);
+        if REFLECTIONS {
+            hit.surface = roughened(hit.surface, blur);
+        }
         var open = 1.0;
         if OCCLUSION {
             open = unoccluded_fraction(hit.surface.point, hit.surface.normal);
@@ -61,6 +67,9 @@ fn picture(pixel: vec2u) -> Pixel {
     // Factor of the light along the current view ray.
     var weight = vec3f(1.0);
     var reflections = 0u;
+    if REFLECTIONS {
+        blur = 0.0;
+    }
     // The number of lights handled for the current surface. The ray leads to the last of them, or
     // is the view ray.
     var lights_done = 0u;
@@ -130,10 +139,12 @@ fn picture(pixel: vec2u) -> Pixel {
                 }
             }
             if REFLECTIONS {
-                if reflections < min(view.reflections, MAX_REFLECTIONS) {
+                weight = through * view.reflection_strength * mirrored_fraction(hit.surface, -view_ray.direction);
+                // A surface that mirrors nothing needs no reflected ray.
+                if reflections < min(view.reflections, MAX_REFLECTIONS) && any(weight > vec3f()) {
                     reflections++;
                     lights_done = 0u;
-                    weight = through * view.reflection_strength * mirrored_fraction(hit.surface, -view_ray.direction);
+                    blur = roughness_of(hit.surface);
                     view_ray = reflected_ray(hit.surface, view_ray, hit.trace.t);
                     ray = view_ray;
                     continue;

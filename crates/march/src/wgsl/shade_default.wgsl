@@ -21,6 +21,15 @@ fn mirrored_fraction(surface: Surface, toward_eye: vec3f) -> vec3f {
     return vec3f(mix(POLISHED, 1.0, square * square * rest));
 }
 
+fn roughness_of(surface: Surface) -> f32 {
+    return 0.0;
+}
+
+// Surfaces without materials have no highlights.
+fn roughened(surface: Surface, roughness: f32) -> Surface {
+    return surface;
+}
+
 // Surfaces without materials do not mirror the sky.
 fn mirrored_sky(surface: Surface) -> vec3f {
     return vec3f();

@@ -114,6 +114,17 @@ fn mirrored_fraction(surface: Surface, toward_eye: vec3f) -> vec3f {
     return (1.0 - paint.roughness) * mirrored;
 }
 
+fn roughness_of(surface: Surface) -> f32 {
+    return surface.material.roughness;
+}
+
+// The surface as a mirror of some roughness shows it.
+fn roughened(surface: Surface, roughness: f32) -> Surface {
+    var seen = surface;
+    seen.material.roughness = max(surface.material.roughness, roughness);
+    return seen;
+}
+
 // The fraction of ambient light that reaches the surface. The occlusion of an unlit surface is
 // below 0.
 fn ambient_fraction(paint: Material) -> f32 {

@@ -57,6 +57,11 @@ impl Paint {
             occlusion: occlusion[0],
         })
     }
+
+    /// The material as a mirror of some roughness shows it.
+    pub(super) fn roughened(self, roughness: f64) -> Self {
+        Self { roughness: self.roughness.max(roughness), ..self }
+    }
 }
 
 impl Surface {
@@ -85,6 +90,11 @@ impl Surface {
             Some(paint) => paint.specular(self.facing()) * (1.0 - paint.roughness),
             None => DVec3::splat(schlick(DIELECTRIC, self.facing().min(1.0))),
         }
+    }
+
+    /// The roughness of the material; 0 without one.
+    pub(super) fn roughness(&self) -> f64 {
+        self.paint.map_or(0.0, |paint| paint.roughness)
     }
 
     /// What mirroring the sky adds to mirroring the ambient light, which is `sky` and `ambient`.

@@ -62,6 +62,8 @@ struct ViewRay<T> {
     ray: Ray<T>,
     /// Factor of the light along the ray.
     weight: DVec3,
+    /// Roughness of the mirrors before, which spread the highlights that they show.
+    blur: f64,
 }
 
 /// The hit of a view ray.
@@ -88,13 +90,16 @@ impl<T: Real> Pixels for Wave<'_, T> {
                 pixel,
                 ray: self.camera_ray(*position),
                 weight: DVec3::ONE,
+                blur: 0.0,
             })
             .collect();
         let mut shades = vec![Shade::default(); positions.len()];
         let primary = self.traced(&view_rays, &mut shades);
         let mut hits = self.lit_hits(&view_rays, &primary, &mut shades);
         for _ in 0..self.view.reflections {
-            view_rays = hits.iter().map(|hit| self.reflected(hit)).collect();
+            // A surface that mirrors nothing needs no reflected ray.
+            let mirrors = |ray: &ViewRay<T>| ray.weight.cmpgt(DVec3::ZERO).any();
+            view_rays = hits.iter().map(|hit| self.reflected(hit)).filter(mirrors).collect();
             let traces = self.traced(&view_rays, &mut shades);
             hits = self.lit_hits(&view_rays, &traces, &mut shades);
         }
@@ -227,7 +232,8 @@ impl<T: Real> Wave<'_, T> {
             };
             let surfaces: Vec<_> = hits.iter().zip(&points).map(vectors).collect();
             for (hit, fields) in hits.iter_mut().zip(surface_values(material, &surfaces)) {
-                hit.surface.paint = Paint::of_fields(&fields);
+                let paint = Paint::of_fields(&fields);
+                hit.surface.paint = paint.map(|paint| paint.roughened(hit.view_ray.blur));
             }
         }
         hits
@@ -301,7 +307,7 @@ impl<T: Real> Wave<'_, T> {
         };
         let factor = surface.mirrored_fraction() * self.view.reflection_strength;
         let weight = view_ray.weight * factor;
-        ViewRay { pixel: view_ray.pixel, ray, weight }
+        ViewRay { pixel: view_ray.pixel, ray, weight, blur: surface.roughness() }
     }
 
     fn block(&self, trace: &Trace<T>, shade: Shade) -> PixelBlock {
