@@ -14,7 +14,7 @@ use sdfc_graph::{
 };
 
 use crate::certify::conservative::{Uncertified, conservative_field};
-use crate::certify::inexact::{inexact_operators, inexact_outside};
+use crate::certify::inexact::inexact_operators;
 use crate::certify::quality::Qualities;
 use crate::cost::cost;
 use crate::leaves::count_leaves;
@@ -112,7 +112,6 @@ pub(crate) fn planar_picture(
         shapes: shape_reports(graph, &qualities, root, &formulas.divided),
         uncertified: formulas.uncertified,
         inexact_operators: inexact_operators(graph, &qualities, root),
-        inexact_outside: inexact_outside(graph, &qualities, root),
         ..Report::default()
     })
 }

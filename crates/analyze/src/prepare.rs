@@ -9,7 +9,7 @@ use crate::analytic::operands::Operands;
 use crate::analytic::queries::{ray_functions, ray_queries};
 use crate::analytic::split::split_analytic;
 use crate::certify::conservative::conservative_field;
-use crate::certify::inexact::{inexact_operators, inexact_outside};
+use crate::certify::inexact::inexact_operators;
 use crate::certify::quality::Qualities;
 use crate::cost::{Cost, cost};
 use crate::leaves::count_leaves;
@@ -149,7 +149,6 @@ fn flatten(
         shapes: shape_reports(graph, &qualities, root, &field.divided),
         uncertified: field.uncertified,
         inexact_operators: inexact_operators(graph, &qualities, root),
-        inexact_outside: inexact_outside(graph, &qualities, root),
     })
 }
 

@@ -43,8 +43,6 @@ pub struct Report {
     pub uncertified: Vec<Uncertified>,
     /// Operators that need an exact distance and are applied to an inexact field.
     pub inexact_operators: Vec<InexactOperator>,
-    /// The shape at which the field stops being exact outside; `None` if it is exact there.
-    pub inexact_outside: Option<ShapeId>,
 }
 
 impl Report {

@@ -1,4 +1,7 @@
 //! The table of diagnostic codes. A code is never renumbered and never reused.
+//!
+//! Retired: W0605 warned about soft shadows of blends and other inexact fields, also if they looked
+//! right.
 
 /// Identifies a kind of diagnostic: `E0201`, `W0601`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -246,14 +249,6 @@ codes! {
         "The file can be imported, but not rendered. Every shape that stands alone at the top \
          level is drawn."
         "write a shape on a line of its own; a file that is only imported need not draw";
-    SOFT_SHADOW "W0605" "Soft shadows of a field that is not the exact distance"
-        "A soft shadow is computed from the distances at which rays to the light pass the shape \
-         that throws it. Where the field is less than the distance, edges are wider and darker \
-         than `soft(...)` says; where nothing is known about the field, they may look wrong in \
-         any way. The note says where the field stops being the distance: at a smooth blend, an \
-         intersection, or a shape that is bent or stretched. Outside a hard union of exact shapes \
-         the field is the distance."
-        "`shadow: hard` needs no distances; or leave it if it looks right";
     IDLE_CLAUSE "W0606" "Clause `copies` without effect"
         "`auto` intersects copies analytically if the formula is `min(sample, ..., limit)`. Every \
          sample is a rigid transform of `p` between jumps of `round`, `floor` and `sign`, \

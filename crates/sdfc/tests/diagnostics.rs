@@ -99,24 +99,6 @@ fn an_operator_that_needs_a_distance_warns_about_a_bound() {
 }
 
 #[test]
-fn a_soft_shadow_wants_distances_outside() {
-    let sun = "sun(direction: [1, 2, 1], shadow: soft(8))\n";
-    let found = |scene: &str| codes(&format!("{sun}{scene}"));
-    assert_eq!(found("sphere(1) | box(1) | plane(y: -1)"), []);
-    assert_eq!(found("sphere(1) & box(1)"), [("W0605", 1)]);
-    assert_eq!(codes("sun(shadow: hard)\nsphere(1) & box(1)"), []);
-    assert_eq!(
-        codes("point_light([1, 2, 3], shadow: soft(4))\nellipsoid([1, 2, 1])"),
-        [("W0605", 1)]
-    );
-    // The union is no distance inside, but shadow rays do not run there.
-    let text =
-        format!("{sun}(sphere(1) | box(1))\n  | union(sphere(2), box(1), blend: smooth(0.2))");
-    let said = Compiler::new().verify(true).check("scene.sdf", &text).to_string();
-    assert!(said.contains("not the distance because of `union` at line 3"), "{said}");
-}
-
-#[test]
 fn copies_without_effect_are_reported() {
     let row = |head: &str, formula: &str| {
         format!(

@@ -33,16 +33,6 @@ pub(crate) fn inexact_operators(
     found.collect()
 }
 
-/// The shape at or below `root` at which the field stops being exact outside; `None` if it is exact
-/// there.
-pub(crate) fn inexact_outside(
-    graph: &Graph,
-    qualities: &Qualities,
-    root: ShapeId,
-) -> Option<ShapeId> {
-    cause(graph, qualities, LevelSet { child: root, outside: true, inside: false })
-}
-
 /// A child of which an operator uses a level set other than the surface.
 struct LevelSet {
     child: ShapeId,

@@ -191,7 +191,7 @@ pub(crate) const ROWS: &[Row] = rows! {
         "hsv" Builtin::Color(K::Hsv), "hsv(h, s, v, a: 1)", "A colour from hue in turns, saturation and value.", "hsv(0.3, 0.8, 1)";
         "oklch" Builtin::Color(K::Oklch), "oklch(l, c, h, a: 1)", "A colour from perceptual lightness, chroma and hue (Oklch, Ottosson 2020); h is an angle.", "oklch(0.7, 0.15, 150deg)";
         "hard" Builtin::Hard, "hard", "A hard shadow, for a light's `shadow`.", "hard";
-        "soft" Builtin::Soft, "soft(sharpness)", "A soft shadow, for a light's `shadow`: the penumbra is 1 / sharpness of the distance to the occluder wide.", "soft(8)";
+        "soft" Builtin::Soft, "soft(sharpness)", "A soft shadow, for a light's `shadow`: the penumbra is 1 / sharpness of the distance to the occluder wide. Beside a shape whose field is less than the distance, such as a blend, it is wider.", "soft(8)";
     }
     "text" {
         "str" Builtin::Str, "str(a, ...)", "Strings and numbers, joined to one string. Numbers have at most six digits after the decimal point. All must be known when the scene compiles.", "str(\"No. \", 7)";

@@ -100,8 +100,6 @@ pub(super) struct Elaborator<'p> {
     pub(super) bounds: Option<Bounds>,
     pub(super) sites: Vec<Site>,
     pub(super) claims: Vec<Claimed>,
-    /// The spans of soft shadows.
-    pub(super) soft_shadows: Vec<Span>,
     pub(super) seen_sites: FxHashSet<(ShapeId, Span)>,
     /// The active calls, outermost first.
     pub(super) frames: Vec<CallFrame<'p>>,
@@ -155,7 +153,6 @@ impl<'p> Elaborator<'p> {
             bounds: None,
             sites: Vec::new(),
             claims: Vec::new(),
-            soft_shadows: Vec::new(),
             seen_sites: FxHashSet::default(),
             frames: Vec::new(),
             active: vec![0; program.functions.len()],

@@ -101,10 +101,6 @@ impl<'p> Elaborator<'p> {
             Shadow::Soft(node) => self.graph.as_number(node),
             Shadow::Off | Shadow::Hard => None,
         };
-        // Nobody can change the default look where a warning about it would stand.
-        if matches!(shadow, Shadow::Soft(_)) && !self.program.library.contains(&expr.span.file) {
-            self.soft_shadows.push(expr.span);
-        }
         if sharpness.is_some_and(|value| !(POSITIVE[0]..=POSITIVE[1]).contains(&value)) {
             let message = "the sharpness of a soft shadow must be above 0";
             let error = Diagnostic::error(ErrorCode::OUT_OF_RANGE, expr.span, message);

@@ -98,11 +98,9 @@ pub(crate) fn elaborate_with(
     elaborator.explain_silence();
     let failed = sdfc_diagnostics::has_errors(&elaborator.diagnostics);
     let declared = definitions::declared(program, &elaborator.definitions);
-    let Elaborator { soft_shadows, sites, claims, diagnostics, literals, structural, .. } =
-        elaborator;
+    let Elaborator { sites, claims, diagnostics, literals, structural, .. } = elaborator;
     let (live_literals, as_written) = (Vec::new(), None);
-    let elaborated =
-        Elaborated { scene, sites, live_literals, as_written, declared, claims, soft_shadows };
+    let elaborated = Elaborated { scene, sites, live_literals, as_written, declared, claims };
     let elaborated = (!failed).then_some(elaborated);
     Elaboration { elaborated, diagnostics, literals, structural }
 }

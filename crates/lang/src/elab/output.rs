@@ -20,8 +20,6 @@ pub struct Elaborated {
     pub declared: Vec<Declared>,
     /// The Lipschitz constants that the scene's functions state, by call.
     pub claims: Vec<Claimed>,
-    /// The spans of soft shadows in the scene.
-    pub soft_shadows: Vec<Span>,
 }
 
 /// The result of a call of a function that states a Lipschitz constant.

@@ -9,7 +9,7 @@ use sdfc_lang::{Declared, Elaborated, Site};
 use super::origins::Origins;
 
 /// Returns the warnings W0601 (operators that need a distance and get a bound), W0602 (shapes
-/// without a Lipschitz constant), W0605 (soft shadows) and W0606 (useless clauses).
+/// without a Lipschitz constant) and W0606 (useless clauses).
 pub(crate) fn warnings(
     elaborated: &Elaborated,
     report: &Report,
@@ -45,7 +45,6 @@ pub(crate) fn warnings(
             warnings.push(warning);
         }
     }
-    warnings.extend(soft_shadows(elaborated, report, &origins, sources));
     warnings.extend(elaborated.declared.iter().filter_map(|shape| idle(elaborated, shape)));
     warnings
 }
@@ -78,26 +77,6 @@ fn idle(elaborated: &Elaborated, declared: &Declared) -> Option<Diagnostic> {
     let help = "write the formula as `min(sample, ..., limit)`; without that the shape is marched \
                 as if the clause were absent";
     Some(Diagnostic::warning(Code::IDLE_CLAUSE, span, message).help(help))
-}
-
-/// Warns about soft shadows of a field that is not the distance outside (W0605).
-fn soft_shadows(
-    elaborated: &Elaborated,
-    report: &Report,
-    origins: &Origins<'_>,
-    sources: &Sources,
-) -> Vec<Diagnostic> {
-    let Some(cause) = report.inexact_outside else { return Vec::new() };
-    let message = "soft shadows need exact distances, but this scene's field is only a bound in \
-                   places";
-    let warning = |&span| {
-        let warning = Diagnostic::warning(Code::SOFT_SHADOW, span, message);
-        match origins.nearest_call(cause) {
-            Some(cause) => warning.note_at(cause.span, since("not the distance", cause, sources)),
-            None => warning,
-        }
-    };
-    elaborated.soft_shadows.iter().map(warning).collect()
 }
 
 /// Returns, for example, "only a bound because of `smooth` at line 3".
