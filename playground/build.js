@@ -43,7 +43,7 @@ async function bundle(options) {
 const started = performance.now();
 await rm(dist, { recursive: true, force: true });
 const sections = await findScenes(root);
-const list = sections.map(({ title, scenes }) => ({ title, scenes: scenes.map(({ name, title }) => ({ name, title })) }));
+const list = sections.map(({ title, scenes }) => ({ title, scenes: scenes.map(({ name, title, image }) => ({ name, title, image })) }));
 const plugins = [
   virtual("examples", () => JSON.stringify(list)),
   virtual("library", async () => JSON.stringify(await library())),
@@ -75,11 +75,11 @@ await cp(join(src, "index.html"), join(dist, "index.html"));
 await cp(join(root, "crates/web/npm/sdfc.wasm"), join(dist, "sdfc.wasm")).catch(() => {
   throw new Error("there is no crates/web/npm/sdfc.wasm: run crates/web/npm/build.sh first");
 });
-for (const { name, source, picture } of sections.flatMap(({ scenes }) => scenes)) {
+for (const { name, source, picture, image } of sections.flatMap(({ scenes }) => scenes)) {
   const path = join(dist, "examples", name);
   await mkdir(dirname(path), { recursive: true });
   await writeFile(path, source);
-  await cp(join(root, picture), path.replace(/sdf$/, "png"));
+  await cp(join(root, picture), join(dist, "examples", image));
 }
 
 const size = (bytes) => `${(bytes / 1024).toFixed(0).padStart(6)} KiB`;

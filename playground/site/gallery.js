@@ -5,14 +5,18 @@ import { escape } from "./page.js";
 
 export const GALLERY = "docs/gallery.md";
 
-/// Adds pictures that open their scenes in the playground: those of the page before its first
-/// heading, all others at its end.
+/// Makes the pictures of the page open their scenes in the playground, and adds those of all other
+/// scenes at its end.
 export function addTiles(page, [own, ...others]) {
-  const tiles = ({ scenes }) => `<div class="tiles">${scenes.map((scene) => tile(scene)).join("\n")}</div>\n`;
-  page.content = page.content.replace("<h2", () => `${tiles(own)}<h2`);
+  const names = new Map(own.scenes.map(({ name, picture }) => [picture.replace("docs/", ""), name]));
+  page.content = page.content.replace(/<img [^>]*src="([^"]+)"[^>]*>/g, (image, path) => {
+    const name = names.get(path);
+    return name ? `<a href="playground/index.html?example=${name}">${image}</a>` : image;
+  });
   for (const section of others) {
-    const { title } = section;
-    page.content += `<h2 id="${anchor(title)}">${escape(title)}</h2>\n${tiles(section)}`;
+    const { title, scenes } = section;
+    const tiles = `<div class="tiles">${scenes.map((scene) => tile(scene)).join("\n")}</div>\n`;
+    page.content += `<h2 id="${anchor(title)}">${escape(title)}</h2>\n${tiles}`;
     page.sections.push({ title, anchor: anchor(title), level: 2, text: [] });
   }
 }

@@ -3,7 +3,7 @@
 import { escape, frame } from "./page.js";
 
 /// The pictures of the first page, in this order. Others fill up the row if one is missing.
-const SHELF = ["gallery/vase.sdf", "balloon.sdf", "gallery/harbour.sdf", "pebbles.sdf", "gyroid_lattice.sdf", "gallery/marble.sdf", "page/beads.sdf", "mandelbulb.sdf"];
+const SHELF = ["page/watch.sdf", "page/reef.sdf", "page/night_city.sdf", "page/tea.sdf", "page/mandelbulb.sdf", "page/synthesizer.sdf", "page/bridge.sdf", "page/poster.sdf"];
 
 const RESULTS = [
   ["targets.html", "Shaders", "WGSL, GLSL, HLSL, Metal, SPIR-V and Shadertoy, with every param as a uniform."],
@@ -24,8 +24,8 @@ const NEXT = [
 const card = ([url, title, text]) => `<a class="card" href="${url}"><h3>${title}</h3><p>${text}</p></a>`;
 
 /// A picture that opens its scene in the playground.
-export const tile = ({ name, title }, up = "") =>
-  `<a class="tile" href="${up}playground/index.html?example=${name}"><img src="${up}playground/examples/${name.replace(/sdf$/, "png")}" alt="" loading="lazy" width="640" height="400"><span>${escape(title)}</span></a>`;
+export const tile = ({ name, title, image }, up = "") =>
+  `<a class="tile" href="${up}playground/index.html?example=${name}"><img src="${up}playground/examples/${image}" alt="" loading="lazy" width="640" height="400"><span>${escape(title)}</span></a>`;
 
 /// `hero` has `code`, the coloured source of the scene that runs in the page, and `open`, its
 /// address in the playground. `sections` are those of [`findScenes`].

@@ -23,10 +23,10 @@ export function fillGallery(parent, chosen) {
   }
 }
 
-function tile({ name, title }, chosen) {
+function tile({ name, title, image }, chosen) {
   const button = document.createElement("button");
   const picture = Object.assign(new Image(), {
-    loading: "lazy", alt: "", src: `examples/${name.replace(/\.sdf$/, ".png")}`,
+    loading: "lazy", alt: "", src: `examples/${image}`,
   });
   button.append(picture, title);
   button.addEventListener("click", () => chosen(name));

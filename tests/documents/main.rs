@@ -5,7 +5,9 @@
 //! - A block that begins with ```` ```sdf ```` is a scene, or the declarations of one.
 //! - ```` ```sdf E0304 ```` is a scene with that code and no other.
 //! - A row of a table with the head `| expression | gives |` has two expressions of equal value.
-//! - In the tutorial and the gallery, a picture right behind a block shows the scene of that block.
+//! - In the tutorial, the gallery and the cookbook, a picture right behind a block shows the scene
+//!   of that block.
+//! - The scenes beside the gallery's pictures compile, and the pictures show them.
 //!
 //! The pages of `docs/reference` and `docs/errors` have tests of their own.
 
@@ -17,6 +19,7 @@
 )]
 
 mod charts;
+mod gallery;
 mod pictures;
 mod readmes;
 
@@ -167,8 +170,8 @@ fn every_expression_gives_what_is_said() {
 }
 
 #[test]
-fn every_picture_of_tutorial_and_gallery_shows_the_scene_of_its_block() {
-    let shown: Vec<(String, String)> = ["docs/tutorial.md", "docs/gallery.md"]
+fn every_picture_behind_a_block_shows_its_scene() {
+    let shown: Vec<(String, String)> = ["docs/tutorial.md", "docs/gallery.md", "docs/cookbook.md"]
         .into_iter()
         .flat_map(|page| {
             let page = std::fs::read_to_string(repository().join(page)).unwrap();
@@ -185,6 +188,40 @@ fn every_picture_of_tutorial_and_gallery_shows_the_scene_of_its_block() {
         }
         assert!(is_same(), "{path} is out of date; rewrite it with DOCUMENTS_UPDATE=1");
     }
+}
+
+#[test]
+fn scenes_of_the_gallery_are_formatted_and_explain_their_diagnostics() {
+    let page = std::fs::read_to_string(repository().join("docs/gallery.md")).unwrap();
+    let entries = gallery::entries();
+    assert!(entries.len() > 10, "the scenes were not found");
+    for gallery::Entry { name, text } in entries {
+        for link in [format!("(gallery/{name}.sdf)"), format!("(gallery/{name}.jpg)")] {
+            assert!(page.contains(&link), "the gallery has no link `{link}`");
+        }
+        assert!(text.starts_with("// "), "{name} begins with no comment");
+        let formatted = sdfc::format(&name, &text).map_err(|errors| errors.to_string());
+        assert!(formatted.as_deref() == Ok(&*text), "{name}: run `sdfc fmt docs/gallery/*.sdf`");
+        let found = Compiler::new().verify(true).check(&name, &text);
+        assert!(found.iter().all(|it| text.contains(it.code.0)), "{found}");
+    }
+}
+
+#[test]
+fn pictures_of_the_gallery_show_their_scenes() {
+    let mut wrong = Vec::new();
+    for entry in gallery::entries() {
+        let mut difference = entry.difference();
+        if difference > gallery::MEAN_TOLERANCE && std::env::var_os("DOCUMENTS_UPDATE").is_some() {
+            entry.draw();
+            difference = entry.difference();
+        }
+        if difference > gallery::MEAN_TOLERANCE {
+            wrong.push(format!("{}: {difference}", entry.name));
+        }
+    }
+    let wrong = wrong.join("\n");
+    assert!(wrong.is_empty(), "out of date; rewrite with DOCUMENTS_UPDATE=1:\n{wrong}");
 }
 
 #[test]

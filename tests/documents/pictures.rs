@@ -1,4 +1,4 @@
-//! The pictures of the tutorial and the gallery: each shows the scene of the block before it.
+//! The pictures of tutorial, gallery and cookbook: each shows the scene of the block before it.
 //! `DOCUMENTS_UPDATE=1` rewrites them.
 
 use sdfc::{Backend, Compiler, PictureOptions, no_progress};
