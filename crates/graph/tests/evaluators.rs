@@ -42,6 +42,14 @@ fn same(a: f64, b: f64) -> bool {
     a.to_bits() == b.to_bits() || (a.is_nan() && b.is_nan())
 }
 
+/// True if the specialised tape knows that the value does not depend on a coordinate, and the
+/// derivative of the whole tape is 0 but for the rounding of its terms. `z / abs(z)` for positive z
+/// is an example: its derivative is a difference of two terms of the size of `1 / z`.
+fn is_constant(whole: Dual, special: Dual, (axis, coordinate): (usize, f64)) -> bool {
+    let change = whole.partials[axis] * coordinate.abs().min(1.0);
+    special.partials[axis] == 0.0 && change.abs() <= 1e-14 * whole.value.abs()
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(2000) })]
 
@@ -203,7 +211,9 @@ proptest! {
                 let is_defined = a.partials.iter().all(|x| x.is_finite());
                 // In a box without width, a number that changes may round to a constant.
                 let is_wide = ranges.iter().all(|[lo, hi]| hi - lo > 1e-6);
-                let is_same = a.partials == b.partials;
+                let is_same = (0..3).all(|i| {
+                    a.partials[i] == b.partials[i] || is_constant(a, b, (i, point[i]))
+                });
                 prop_assert!(is_same || !is_defined || !is_wide, "{a:?} {b:?} at {point:?}");
             }
         }
