@@ -63,6 +63,15 @@ const SCENES: &[(&str, &str)] = &[
          spacing: 0.8)",
     ),
     (
+        "copies of two kinds",
+        "repeat(fn(c) = if hash(1, c) < 0.5 { sphere(0.3) } else { box(0.4).twist(90deg) }, \
+         spacing: 1.2)",
+    ),
+    (
+        "copies between two kinds",
+        "repeat(fn(c) = morph(sphere(0.3), box(0.4).twist(90deg), hash(1, c)), spacing: 1.2)",
+    ),
+    (
         "copies rotated and scaled",
         "solid pebble(c: vec3)\n  bounds -0.3 .. 0.3\n\
          = ellipsoid([0.2, 0.1, 0.15] * (0.5 + 0.5 * hash(1, c))).rotate(y: hash(2, c) * 1turn)(p)\n\
@@ -136,6 +145,16 @@ const LURES: &[(&str, &str)] = &[
     (
         "another shape at each point",
         "solid wobble(r: length) = {\n let s = sphere(r * (1 + 0.3 * sin(20 * p.y)))\n s(p)\n}\nwobble(0.5)",
+    ),
+    (
+        "one of two shapes by the point",
+        "solid two() = {\n let s = if p.x < 0.1 { sphere(1) } else { box(0.2).twist(90deg) }\n s(p)\n}\n\
+         two()",
+    ),
+    (
+        "a mixture of two shapes by the point",
+        "solid two() = {\n let s = morph(sphere(1), sphere(0.2), clamp(9 * p.x, 0, 1))\n s(p)\n}\n\
+         two()",
     ),
     (
         "a scaled copy of another shape at each point",

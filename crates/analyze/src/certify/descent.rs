@@ -4,8 +4,9 @@
 //! node, which callers treat as a whole.
 
 use rustc_hash::FxHashSet;
-use sdfc_graph::{Binary, Graph, Node, NodeId, ShapeId, Stage, Ternary, Type, Unary};
+use sdfc_graph::{Binary, Graph, Node, NodeId, ShapeId, Ternary, Type, Unary};
 
+use crate::certify::affine::is_fixed;
 use crate::certify::maps::Maps;
 use crate::certify::quality::{is_fixed_shape, scaled_sample};
 
@@ -56,7 +57,7 @@ pub(crate) fn form(graph: &mut Graph, node: NodeId, maps: &mut Maps) -> Form {
         Node::Binary(Binary::Max, a, b) if scalar => Form::Max(a, b),
         Node::Unary(Unary::Neg, a) if scalar => Form::Neg(a),
         Node::Ternary(Ternary::Select, [condition, a, b])
-            if scalar && graph.stage(condition) < Stage::Point =>
+            if scalar && is_fixed(graph, condition, maps.level()) =>
         {
             Form::Select(condition, a, b)
         }

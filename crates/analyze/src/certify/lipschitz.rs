@@ -375,33 +375,48 @@ impl Slopes {
 
     fn ternary(&self, graph: &mut Graph, op: Ternary, [a, b, c]: [NodeId; 3]) -> Constant {
         match op {
-            // |1 - t| La + |t| Lb for a t that does not depend on the point.
-            Ternary::Mix => {
-                if graph.stage(c) == Stage::Point {
-                    return self.varying_mix(graph, [a, b, c]);
-                }
-                let one = graph.number(1.0);
-                let rest = graph.sub(one, c);
-                let (left, right) = (largest_lane(graph, rest), largest_lane(graph, c));
-                let (x, y) = (self.constant(a)?, self.constant(b)?);
-                let (x, y) = (graph.mul(left, x), graph.mul(right, y));
-                Ok(graph.add(x, y))
-            }
+            Ternary::Mix => self.mixture(graph, [a, b], c),
             Ternary::Clamp => {
-                if graph.stage(b) == Stage::Point || graph.stage(c) == Stage::Point {
+                if !(self.is_fixed(graph, b) && self.is_fixed(graph, c)) {
                     return Err(Reason::Unbounded("clamp"));
                 }
                 self.constant(a)
             }
             Ternary::Smoothstep => self.smoothstep(graph, [a, b, c]),
             Ternary::Select => {
-                if graph.stage(a) == Stage::Point {
+                if !self.is_fixed(graph, a) {
                     return Err(Reason::Jump("if"));
                 }
                 let (x, y) = (self.constant(b)?, self.constant(c)?);
                 Ok(graph.max(x, y))
             }
         }
+    }
+
+    /// True if a node does not depend on the point of the formula. It may depend on the points of
+    /// enclosing formulas, such as the index of a cell.
+    fn is_fixed(&self, graph: &Graph, node: NodeId) -> bool {
+        affine::is_fixed(graph, node, self.maps.level())
+    }
+
+    /// `mix(a, b, t)`: |1 - t| La + |t| Lb for a t that does not depend on any point. For a t from
+    /// 0 to 1 that depends only on enclosing formulas, it is the larger one of La and Lb.
+    fn mixture(&self, graph: &mut Graph, [a, b]: [NodeId; 2], t: NodeId) -> Constant {
+        let varies = graph.stage(t) == Stage::Point;
+        let range = graph.range(t);
+        let is_fraction = range.lo >= 0.0 && range.hi <= 1.0;
+        if varies && !(self.is_fixed(graph, t) && is_fraction) {
+            return self.varying_mix(graph, [a, b, t]);
+        }
+        let (x, y) = (self.constant(a)?, self.constant(b)?);
+        if varies {
+            return Ok(graph.max(x, y));
+        }
+        let one = graph.number(1.0);
+        let rest = graph.sub(one, t);
+        let (left, right) = (largest_lane(graph, rest), largest_lane(graph, t));
+        let (x, y) = (graph.mul(left, x), graph.mul(right, y));
+        Ok(graph.add(x, y))
     }
 
     /// The constant of a vector of lanes. If the lanes depend on different components of the point,

@@ -8,6 +8,7 @@ use rustc_hash::FxHashMap;
 use sdfc_graph::eval::{FrameValues, Interval};
 use sdfc_graph::{Binary, Contract, Graph, Node, NodeId, Param, ShapeId, Stage, Ternary, Unary};
 
+use crate::certify::affine::is_fixed;
 use crate::certify::lipschitz::Slopes;
 use crate::certify::local_slope::{SCENE_OPERATIONS, steepest_within};
 use crate::certify::maps::Maps;
@@ -283,7 +284,7 @@ impl Qualities {
                     None => sides.weaker(sides.swapped()),
                 }),
             Node::Ternary(Ternary::Select, [condition, a, b])
-                if graph.stage(condition) < Stage::Point =>
+                if is_fixed(graph, condition, maps.level()) =>
             {
                 of(a).weaker(of(b))
             }

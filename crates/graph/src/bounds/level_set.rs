@@ -88,6 +88,12 @@ impl Deriver<'_> {
                     yes.hull(self.graph, no).loose()
                 }
             }
+            // Between two values neither of which reaches the limit.
+            Node::Ternary(Ternary::Mix, [a, b, t]) if self.is_fraction(t) => {
+                let a = self.zone(Query { node: a, ..query });
+                let b = self.zone(Query { node: b, ..query });
+                a.hull(self.graph, b).loose()
+            }
             Node::Sample(shape, at) if !above => {
                 let zone = self.shape_zone(shape, query.limit);
                 let rows = self.affine(at, query.level);
@@ -108,6 +114,12 @@ impl Deriver<'_> {
             | Node::Element(..)
             | Node::MaterialAt(..) => self.opaque(query),
         }
+    }
+
+    /// True if a value is from 0 to 1 everywhere.
+    fn is_fraction(&self, t: NodeId) -> bool {
+        let range = self.graph.range(t);
+        range.lo >= 0.0 && range.hi <= 1.0
     }
 
     fn binary(&mut self, query: Query, op: Binary, a: NodeId, b: NodeId) -> Zone {
