@@ -150,11 +150,15 @@ module.exports = grammar({
 
     // ---- Types
 
-    type: ($) => choice($.type_name, $.list_type, $.function_type),
+    type: ($) => choice($.type_name, $.list_type, $.record_type, $.function_type),
 
     type_name: ($) => choice($.identifier, 'solid', 'region', 'shape'),
 
     list_type: ($) => seq('[', $.type, ']'),
+
+    record_type: ($) => seq('(', $.field_type, repeat(seq(',', $.field_type)), optional(','), ')'),
+
+    field_type: ($) => seq(field('name', $.identifier), ':', field('type', $.type)),
 
     function_type: ($) =>
       seq(
@@ -238,6 +242,7 @@ module.exports = grammar({
         $.boolean,
         $.identifier,
         $.parenthesized_expression,
+        $.record,
         $.list,
         $.block,
         $.if_expression,
@@ -245,6 +250,10 @@ module.exports = grammar({
       ),
 
     parenthesized_expression: ($) => seq('(', $.expression, ')'),
+
+    record: ($) => seq('(', $.field, repeat(seq(',', $.field)), optional(','), ')'),
+
+    field: ($) => seq(field('name', $.identifier), ':', field('value', $.expression)),
 
     list: ($) => seq('[', commaSeparated($._element), ']'),
 

@@ -65,7 +65,9 @@ fn the_playground_knows_the_words_of_the_language() {
     let (keywords, clauses) = (list("KEYWORDS"), list("CLAUSES"));
     let words: BTreeSet<String> = keywords.union(&clauses).cloned().collect();
     let parts = ["from", "as", "else", "in"].map(str::to_owned);
-    assert_eq!(words, &named("syntax") | &BTreeSet::from(parts));
+    // The page has a row for records, which are written without a word.
+    let without_word = BTreeSet::from(["record".to_owned()]);
+    assert_eq!(words, &(&named("syntax") - &without_word) | &BTreeSet::from(parts));
     assert_eq!(&list("TYPES") - &words, &named("type") - &words);
 }
 

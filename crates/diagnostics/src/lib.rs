@@ -125,8 +125,13 @@ impl Diagnostic {
     }
 
     /// Adds a change that replaces one source range.
-    pub fn fix(mut self, title: impl Into<String>, span: Span, text: impl Into<String>) -> Self {
-        self.fixes.push(Fix { title: title.into(), edits: vec![(span, text.into())] });
+    pub fn fix(self, title: impl Into<String>, span: Span, text: impl Into<String>) -> Self {
+        self.fix_all(title, vec![(span, text.into())])
+    }
+
+    /// Adds a change that replaces source ranges, which do not overlap.
+    pub fn fix_all(mut self, title: impl Into<String>, edits: Vec<(Span, String)>) -> Self {
+        self.fixes.push(Fix { title: title.into(), edits });
         self
     }
 

@@ -98,6 +98,9 @@ impl<'a> Node<'a> {
             Self::Type(it) => match &it.kind {
                 TypeExprKind::Named(_) => {}
                 TypeExprKind::List(of) => out.push(Node::Type(of)),
+                TypeExprKind::Record(fields) => {
+                    out.extend(fields.iter().map(|field| Node::Type(&field.ty)));
+                }
                 TypeExprKind::Fn(parameters, result) => {
                     out.extend(parameters.iter().map(Node::Type));
                     out.push(Node::Type(result));
@@ -135,6 +138,9 @@ fn expr_children<'a>(e: &'a Expr, out: &mut Vec<Node<'a>>) {
             out.extend([Node::Signature(signature), Node::Expr(body)]);
         }
         ExprKind::List(elements) => out.extend(elements.iter().map(element)),
+        ExprKind::Record(fields) => {
+            out.extend(fields.iter().map(|field| Node::Expr(&field.value)));
+        }
         ExprKind::Call(callee, args) => {
             out.push(Node::Expr(callee));
             out.extend(args.iter().map(Node::Arg));

@@ -67,6 +67,12 @@ fn a_dot_is_completed_by_the_type_of_the_receiver() {
     assert_eq!(of_vector[..3], ["x", "y", "z"]);
     assert!(of_vector.contains(&"length".into()) && !of_vector.contains(&"translate".into()));
     assert_eq!(labels("let r = 0..1\nlet a = r.$0")[..2], ["lo", "hi"]);
+    let record = "let a = (size: 1, at: [1, 2])\n";
+    let of_record = labels(&format!("{record}let b = a.$0"));
+    assert_eq!(of_record[..2], ["size", "at"]);
+    assert!(of_record.contains(&"with".into()) && !of_record.contains(&"sin".into()));
+    assert_eq!(labels(&format!("{record}let b = a.at.$0"))[..2], ["x", "y"]);
+    assert_eq!(labels("let a = material()\nlet b = a.$0")[..2], ["color", "roughness"]);
     let own = labels("fn halved(a: solid) = a.scale(0.5)\nsphere(1).ha$0");
     assert!(own.contains(&"halved".into()));
     // A colour is a pattern too.

@@ -136,6 +136,13 @@ pub fn load(
     (ordered, found)
 }
 
+/// Reads the files that a scene imports, for what the resolver learns from it. Files that cannot be
+/// read are skipped.
+pub fn visit(sources: &mut Sources, scene: FileId, resolver: &dyn Resolver) {
+    let (tree, _) = sdfc_syntax::parse(sources, scene);
+    load(sources, (scene, &tree), resolver);
+}
+
 /// The folder in a path, with the separator at its end; empty if there is none.
 fn folder_of(name: &str) -> &str {
     let end = name.rfind(std::path::is_separator).map_or(0, |last| last + 1);

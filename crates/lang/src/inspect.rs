@@ -55,7 +55,7 @@ fn inspect_with(
     resolver: &dyn Resolver,
     uses: Uses,
 ) -> Inspection {
-    let checked = check_scene(sources, file, resolver, Some(uses));
+    let checked = check_scene(sources, file, resolver, None, Some(uses));
     Inspection {
         program: checked.program,
         tree: checked.tree,

@@ -54,7 +54,7 @@ pub mod uses;
 use sdfc_diagnostics::{Code, Diagnostic, FileId, Sources, has_errors};
 use sdfc_syntax::ast;
 
-use check::SceneFile;
+use check::{SceneFile, SceneFiles};
 pub use check::{check, check_library, check_with_imports};
 pub use elab::{Claimed, CompileValues, Declared, DeclaredPromise, Elaborated, Site};
 pub use import::{NoFiles, Resolver};
@@ -88,6 +88,9 @@ pub struct Options<'v> {
     pub focus: Option<u32>,
     /// Values for the params that decide what the scene consists of; `None` for their defaults.
     pub values: Option<&'v CompileValues>,
+    /// Arguments of `camera(...)` that replace the scene's camera, such as `eye: [4, 3, 5]`. They
+    /// can use the names of the scene.
+    pub camera: Option<&'v str>,
 }
 
 /// Like [`front_with_imports`], with options.
@@ -97,7 +100,7 @@ pub fn front_with(
     resolver: &dyn Resolver,
     options: Options<'_>,
 ) -> (Option<Elaborated>, Vec<Diagnostic>) {
-    let checked = check_scene(sources, file, resolver, None);
+    let checked = check_scene(sources, file, resolver, options.camera, None);
     let (program, mut found) = (checked.program, checked.found);
     if has_errors(&found) {
         return (None, found);
@@ -114,6 +117,20 @@ pub fn front_with(
     (elaborated, found)
 }
 
+/// Returns the params that a scene declares, also if it cannot be elaborated with their defaults.
+/// There are none if the scene does not pass the check.
+pub fn declared_params(
+    sources: &mut Sources,
+    file: FileId,
+    resolver: &dyn Resolver,
+) -> Vec<sdfc_graph::Param> {
+    let checked = check_scene(sources, file, resolver, None, None);
+    if has_errors(&checked.found) {
+        return Vec::new();
+    }
+    elab::declared_params(&checked.program, &font::Fonts::new(resolver))
+}
+
 /// A scene after the check.
 struct Checked {
     tree: ast::File,
@@ -125,11 +142,12 @@ struct Checked {
     found: Vec<Diagnostic>,
 }
 
-/// Parses and checks a scene. Fills `uses` if it is there.
+/// Parses and checks a scene, with another camera if there is one. Fills `uses` if it is there.
 fn check_scene(
     sources: &mut Sources,
     file: FileId,
     resolver: &dyn Resolver,
+    camera: Option<&str>,
     uses: Option<uses::Uses>,
 ) -> Checked {
     let (tree, mut found) = sdfc_syntax::parse(sources, file);
@@ -142,8 +160,16 @@ fn check_scene(
     }
     let (imports, of_imports) = import::load(sources, (file, &tree), resolver);
     found.extend(of_imports);
+    let camera = camera.map(|arguments| {
+        let file = sources.add("camera", format!("camera({arguments})"));
+        let (tree, of_camera) = sdfc_syntax::parse(sources, file);
+        found.extend(of_camera);
+        (file, tree)
+    });
+    let camera = camera.as_ref().map(|(file, tree)| (*file, tree));
     let scene = SceneFile { file, tree: &tree, path: resolver.scene_path() };
-    let checked = reachability::check(sources, &library, &imports, scene, uses);
+    let scene = SceneFiles { imports: &imports, scene, camera };
+    let checked = reachability::check(sources, &library, scene, uses);
     let parsed = !has_errors(&found);
     // A part that could not be parsed may use or draw the items that warnings call unused.
     found.extend(checked.diagnostics.into_iter().filter(|it| parsed || it.is_error()));

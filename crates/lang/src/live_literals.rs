@@ -182,10 +182,12 @@ impl<'a> Lifting<'a> {
                 self.expr(a);
                 self.expr(b);
             }
-            ExprKind::Vector(parts) | ExprKind::Kernel(_, parts) => {
+            ExprKind::Vector(parts) | ExprKind::Record(parts) | ExprKind::Kernel(_, parts) => {
                 parts.iter_mut().for_each(|part| self.expr(part));
             }
             ExprKind::Swizzle(a, _)
+            | ExprKind::Field(a, _)
+            | ExprKind::MaterialField(a, _)
             | ExprKind::RangeEnd(a, _)
             | ExprKind::Splat(a)
             | ExprKind::Constant(a) => self.expr(a),

@@ -11,8 +11,7 @@ use rustc_hash::FxHashMap;
 use sdfc_diagnostics::{FileId, Sources, has_errors};
 use sdfc_syntax::ast::{self, Item};
 
-use crate::check::{CheckedItems, SceneFile, check_items};
-use crate::import::Imported;
+use crate::check::{CheckedItems, SceneFiles, check_items};
 use crate::library;
 use crate::uses::Uses;
 
@@ -24,8 +23,7 @@ const OPERATORS: [&str; 3] = ["union", "intersection", "difference"];
 pub(crate) fn check(
     sources: &Sources,
     library: &[FileId],
-    imports: &[Imported],
-    scene: SceneFile<'_>,
+    of_scene: SceneFiles<'_>,
     uses: Option<Uses>,
 ) -> CheckedItems {
     // File ids are part of every span. So parsed items can be reused only if the library's files
@@ -39,15 +37,17 @@ pub(crate) fn check(
         other = Library::new(library);
         &other
     };
-    let files = imports.iter().map(|import| import.file).chain([scene.file]);
+    let SceneFiles { imports, scene, camera } = of_scene;
+    let own = [scene.file].into_iter().chain(camera.map(|(file, _)| file));
+    let files = imports.iter().map(|import| import.file).chain(own);
     let reached = library.reached(sources, files.map(|file| sources.text(file)));
     let look = library.look(sources);
     let again = uses.clone();
     // Who asks about a cursor needs no messages, and the text there is seldom complete.
     let needs_messages = uses.as_ref().is_none_or(|uses| uses.cursor.is_none());
-    let checked = check_items(&reached, look, imports, scene, uses);
+    let checked = check_items(&reached, look, of_scene, uses);
     if needs_messages && has_errors(&checked.diagnostics) {
-        return check_items(&library.whole(sources), look, imports, scene, again);
+        return check_items(&library.whole(sources), look, of_scene, again);
     }
     checked
 }

@@ -2,9 +2,15 @@
 
 use sdfc_syntax::ast::{Parm, TypeExpr, TypeExprKind};
 
+use crate::check::builtins::FIELDS;
 pub use crate::check::kernel::takes_first as kernel_takes;
 use crate::check::types::{blend, named, same_value};
 use crate::hir::Type;
+
+/// Returns the fields of a material, with their types.
+pub fn material_fields() -> [(&'static str, Type); 5] {
+    FIELDS.map(|(name, _, ty)| (name, ty))
+}
 
 /// Returns true if a value of a type can be the argument of a parameter.
 pub fn takes(parm: &Parm, ty: &Type) -> bool {
@@ -26,6 +32,14 @@ fn takes_type(written: &TypeExpr, ty: &Type) -> bool {
         },
         (TypeExprKind::List(of), Type::List(ty)) => takes_type(of, ty),
         (TypeExprKind::List(_), _) => false,
+        (TypeExprKind::Record(fields), Type::Record(of)) => {
+            fields.len() == of.len()
+                && fields.iter().all(|field| {
+                    let same_name = |(name, _): &&(String, Type)| *name == field.name.text;
+                    of.iter().find(same_name).is_some_and(|(_, ty)| takes_type(&field.ty, ty))
+                })
+        }
+        (TypeExprKind::Record(_), _) => false,
         (TypeExprKind::Fn(parameters, result), Type::Fn(types, ty)) => {
             parameters.len() == types.len() && takes_type(result, ty)
         }

@@ -71,6 +71,7 @@ const ROWS: &[(&str, &str)] = &[
     ("time", "t itime seconds clock"),
     ("if c { a } else { b }", "select ternary cond where"),
     ("[for x in list: f(x)]", "map listcomprehension"),
+    ("[for x in list: x, y]", "append push pushback concat cons"),
     ("len", "count numelements"),
     ("iterate", "fold reduce loop while"),
     // Words that begin a line.

@@ -38,6 +38,29 @@ fn wrong_names_are_reported() {
 }
 
 #[test]
+fn wrong_records_are_reported() {
+    assert_findings!(all(&[
+        "let a = (size: 1, at: [1, 2])\nsphere(a.sise)\nsphere(a.radius)\nsphere(a)",
+        "let a = (x: 1, x: 2)\nsphere(a.x)",
+        "fn f(a: (x: number, y: number)) = a.x\nsphere(f((x: 1)))\nsphere(f((x: 1, y: 2, z: 3)))\nlet a = (x: 1, z: 2)\nsphere(f(a))\nsphere(f((x: #fff, y: 1)))",
+        "let a = (x: 1)\nsphere(a.with(y: 2).x)\nsphere(a.with(x: #fff).x)\nsphere(a + a)",
+        "let a = (body: sphere(1), scale: fn(k: number) = k)\nlet d = a.body([0, 0, 0])\nsphere(a.scale(2))",
+        "let a = if true { (x: 1) } else { (y: 1) }\nsphere(1)",
+        "sphere(iterate(3, (x: 1, a: sphere(1)), fn(s) = s).x)\nsphere(iterate(3, (x: 1), fn(s) = (y: 2)).x)",
+        "let m = material()\nsphere(m.colour.r)\nsphere(m.rough)",
+    ]));
+}
+
+#[test]
+fn a_record_cannot_grow_without_limit() {
+    let doubled: String =
+        (1..40).map(|at| format!("let a{at} = (x: a{0}, y: a{0})\n", at - 1)).collect();
+    let found = findings(&format!("let a0 = (x: 1)\n{doubled}sphere(1)"));
+    assert!(found.contains("this type has more than 1024 parts"), "{found}");
+    assert_eq!(found.matches("error[").count(), 1, "{found}");
+}
+
+#[test]
 fn wrong_calls_are_reported() {
     assert_findings!(all(&[
         "sphere(1, 2)\nsphere(radius: 1)\nsphere(r: 1, r: 2)\nsphere(r: 1, 2)",

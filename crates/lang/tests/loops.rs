@@ -51,6 +51,23 @@ fn long_counts_and_ranges_become_loops() {
 }
 
 #[test]
+fn a_record_is_the_state_of_one_loop() {
+    // An orbit with its least distance to a point, and whether it was ever near.
+    let step = "fn(s) = {
+        let q = 1.1 * s.at.yzx - 0.2 * p
+        let d = length(q - [0.3, 0, 0])
+        (at: q, trap: (least: min(s.trap.least, d), near: s.trap.near || d < 0.5), n: s.n + 1)
+    }, while: fn(s) = length(s.at) < 4";
+    let start = "(at: p, trap: (least: 9, near: false), n: 0)";
+    let result = "s.at.x + s.trap.least + s.n + if s.trap.near { 3 } else { 0 }";
+    let written = (0..5).fold(start.to_owned(), |s, _| format!("iterate(4, {s}, {step})"));
+    same(
+        &format!("{{ let s = iterate(20, {start}, {step}); {result} }}"),
+        &format!("{{ let s = {written}; {result} }}"),
+    );
+}
+
+#[test]
 fn a_condition_ends_a_loop() {
     same(
         "iterate(8, p, fn(q) = 1.5 * q.yzx + 0.1, while: fn(q) = length(q) < 3).x",

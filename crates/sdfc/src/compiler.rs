@@ -5,12 +5,13 @@ use std::sync::Arc;
 use sdfc_analyze::{LoopStrategy, prepare_with};
 use sdfc_codegen::Stopwatch;
 use sdfc_diagnostics::{Code, Diagnostic, Sources, Span, has_errors};
+use sdfc_graph::Param;
 use sdfc_lang::{CompileValues, NoFiles, Options, Resolver};
 
 use crate::diagnostics::Diagnostics;
 use crate::diagnostics::refutations::refutations;
 use crate::diagnostics::warnings::warnings;
-use crate::params::ParamError;
+use crate::params::{ParamError, parse_values};
 use crate::scene::{FrontTimes, Scene};
 use crate::source_id::SourceId;
 
@@ -144,6 +145,21 @@ impl<'r> Compiler<'r> {
         Self { options: Options { values: Some(values), ..self.options }, ..self }
     }
 
+    /// Replaces the camera of the scene: the arguments of `camera(...)`, which can use the names of
+    /// the scene.
+    ///
+    /// ```
+    /// use sdfc::Compiler;
+    ///
+    /// let text = "let r = 2\nsphere(r)\ncamera(eye: [0, 0, 9])";
+    /// assert!(Compiler::new().camera("eye: [0, 3 * r, 9]").check("ball.sdf", text).is_empty());
+    /// let found = Compiler::new().camera("eye: 3, zoom: 2").check("ball.sdf", text);
+    /// assert!(found.to_string().contains("`camera` has no parameter `zoom`"));
+    /// ```
+    pub fn camera(self, arguments: impl Into<Option<&'r str>>) -> Self {
+        Self { options: Options { camera: arguments.into(), ..self.options }, ..self }
+    }
+
     /// Chooses between loops over similar parts of the scene and unrolled code. The default picks
     /// the cheaper one.
     pub fn loops(self, loops: LoopStrategy) -> Self {
@@ -212,11 +228,18 @@ impl<'r> Compiler<'r> {
         text: &str,
         set: &[(&str, &str)],
     ) -> Result<Scene, CompileWithError> {
-        let mut scene = self.compile(name, text)?;
-        let mut values = CompileValues::new();
-        for (param, value) in set {
-            values.insert((*param).to_owned(), scene.param_value(param, value)?);
-        }
+        let (mut scene, values) = match self.compile(name, text) {
+            Ok(scene) => {
+                let values = parse_values(scene.params(), set)?;
+                (scene, values)
+            }
+            Err(errors) => {
+                // The values may fix what the defaults break.
+                let values = parse_values(&self.declared_params(name, text), set);
+                let values = values.ok().filter(|values| !values.is_empty()).ok_or(errors)?;
+                (self.values(&values).compile(name, text)?, values)
+            }
+        };
         if scene.needs_compile(&values) {
             scene = self.values(&values).compile(name, text)?;
         }
@@ -225,6 +248,13 @@ impl<'r> Compiler<'r> {
             param.default = values.get(&param.name).copied().unwrap_or(param.default);
         }
         Ok(scene)
+    }
+
+    /// The params of a scene, also if it does not compile with their defaults.
+    fn declared_params(&self, name: &str, text: &str) -> Vec<Param> {
+        let mut sources = Sources::new();
+        let file = sources.add(name, text);
+        sdfc_lang::declared_params(&mut sources, file, self.resolver)
     }
 
     /// Compiles the source of a scene and returns all errors and warnings.

@@ -254,6 +254,22 @@ fn put(
     Ok(())
 }
 
+/// Parses values for params by name.
+///
+/// # Errors
+///
+/// [`ParamError`], except [`ParamError::Fixed`].
+pub(crate) fn parse_values(
+    params: &[Param],
+    set: &[(&str, &str)],
+) -> Result<CompileValues, ParamError> {
+    let one = |(name, text): &(&str, &str)| {
+        let (_, param) = find(params, name)?;
+        Ok(((*name).to_owned(), value(param, text)?))
+    };
+    set.iter().map(one).collect()
+}
+
 /// Parses the value of a param.
 fn value(param: &Param, text: &str) -> Result<[f64; 4], ParamError> {
     let text = text.trim();

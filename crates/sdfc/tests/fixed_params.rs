@@ -127,6 +127,18 @@ fn values_that_are_invalid_together_are_errors_of_the_scene() {
 }
 
 #[test]
+fn values_fix_a_scene_that_is_wrong_with_its_defaults() {
+    let text = "param n: int = 1 in 0..9\nparam r = 0.5 in 0..1\n\
+                union([for i in 0..n: sphere(r).translate(x: 4 * i)][0..2])";
+    assert!(Compiler::new().check("a.sdf", text).has_errors());
+    let set = [("n", "3"), ("r", "0.25")];
+    let scene = Compiler::new().compile_with("a.sdf", text, &set).unwrap();
+    assert_eq!(scene.distance([4.0, 0.0, 0.0]).unwrap(), -0.25);
+    let error = Compiler::new().compile_with("a.sdf", text, &[("r", "0.25")]).unwrap_err();
+    assert!(error.to_string().contains("slice 0..2 is outside 0..1"), "{error}");
+}
+
+#[test]
 fn a_choice_can_be_the_words_of_a_text() {
     let text = "param word = \"i\" in [\"i\", \"long\"]\ntext(word).extrude(0.2)";
     let width = |set: &[(&str, &str)]| {

@@ -214,6 +214,17 @@ pub enum TypeExprKind {
     List(Box<TypeExpr>),
     /// `fn(A, B) -> R`
     Fn(Vec<TypeExpr>, Box<TypeExpr>),
+    /// `(name: T, ...)`
+    Record(Vec<FieldType>),
+}
+
+/// One field of the type of a record: `name: type`
+#[derive(Clone, Debug, PartialEq)]
+pub struct FieldType {
+    /// Its name.
+    pub name: Name,
+    /// Its type.
+    pub ty: TypeExpr,
 }
 
 /// An expression.
@@ -293,6 +304,8 @@ pub enum ExprKind {
     Lambda(Box<Signature>, Box<Expr>),
     /// `[a, b, for ...]`
     List(Vec<Element>),
+    /// `(name: a, ...)`
+    Record(Vec<Field>),
     /// `callee(arguments)`; `x.f(a)` is a call whose callee is `Field(x, f)`.
     Call(Box<Expr>, Vec<Arg>),
     /// `base.name`
@@ -329,6 +342,15 @@ pub struct Comprehension {
     pub body: Element,
     /// The whole construct.
     pub span: Span,
+}
+
+/// One field of a record: `name: value`
+#[derive(Clone, Debug, PartialEq)]
+pub struct Field {
+    /// Its name.
+    pub name: Name,
+    /// Its value.
+    pub value: Expr,
 }
 
 /// One argument of a call.

@@ -53,6 +53,10 @@ fn show(text: &str, expr: &Expr) -> String {
             let shown: Vec<_> = elements.iter().map(|e| show_element(text, e)).collect();
             format!("[{}]", shown.join(", "))
         }
+        ExprKind::Record(fields) => {
+            let shown = fields.iter().map(|it| format!("{}: {}", it.name.text, show(&it.value)));
+            format!("({})", shown.collect::<Vec<_>>().join(", "))
+        }
         ExprKind::Call(callee, args) => {
             let shown: Vec<_> = args.iter().map(|arg| show_arg(text, arg)).collect();
             format!("{}({})", show(callee), shown.join(", "))

@@ -4,6 +4,7 @@
   (arguments)
   (parameters)
   (list)
+  (record)
   (parenthesized_expression)
 ] @fold
 

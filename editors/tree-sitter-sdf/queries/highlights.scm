@@ -16,6 +16,8 @@
 (param name: (identifier) @variable.parameter)
 (parameter name: (identifier) @variable.parameter)
 (named_argument name: (identifier) @variable.parameter)
+(field name: (identifier) @property)
+(field_type name: (identifier) @property)
 (imported_name (identifier) @function)
 
 (type_name) @type

@@ -5,6 +5,7 @@
   (arguments)
   (parameters)
   (list)
+  (record)
   (parenthesized_expression)
   (declaration)
 ] @indent.begin

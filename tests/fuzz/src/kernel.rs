@@ -74,6 +74,8 @@ pub const SIGNATURES: &[&str] = &[
     "material(color: color = #999, roughness: number = 0.5 in 0..1, metallic: number = 0 in 0..1, emission: color = #000, occlusion: number = 1 in 0..1) -> material",
     "with(material: material, color: color = #999, roughness: number = 0.5 in 0..1, metallic: number = 0 in 0..1, emission: color = #000, occlusion: number = 1 in 0..1) -> material",
     "rgb(r: number in 0..1, g: number in 0..1, b: number in 0..1, a: number = 1 in 0..1) -> color",
+    "linear_rgb(r: number in 0..4, g: number in 0..4, b: number in 0..4, a: number = 1 in 0..1) -> color",
+    "hsl(h: number in 0..1, s: number in 0..1, l: number in 0..1, a: number = 1 in 0..1) -> color",
     "hsv(h: number in 0..1, s: number in 0..1, v: number in 0..1, a: number = 1 in 0..1) -> color",
     "oklch(l: number in 0..1, c: number in 0..0.3, h: angle, a: number = 1 in 0..1) -> color",
 ];
@@ -83,7 +85,7 @@ pub const LEFT_OUT: [(&str, &str); 1] = [("glyph_curves", "only `text` of the li
 
 /// Returns true if the arguments of a kernel function have names.
 pub fn is_named(function: &str) -> bool {
-    ["material", "with", "rgb", "hsv", "oklch"].contains(&function)
+    ["material", "with", "rgb", "linear_rgb", "hsl", "hsv", "oklch"].contains(&function)
 }
 
 /// The values that the parameters of settings can have, with the setting. The elaborator refuses

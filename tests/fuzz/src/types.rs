@@ -71,6 +71,7 @@ impl Ty {
                 let result = Self::written(result, dimensions)?;
                 Ok(Self::Fn(parameters.collect::<Result<_, _>>()?, Box::new(result)))
             }
+            TypeExprKind::Record(_) => Err("the generator does not know records".to_owned()),
         }
     }
 
@@ -113,6 +114,7 @@ impl Ty {
             hir::Type::Bool
             | hir::Type::Range(_)
             | hir::Type::List(_)
+            | hir::Type::Record(_)
             | hir::Type::Fn(..)
             | hir::Type::Shape(_)
             | hir::Type::Material

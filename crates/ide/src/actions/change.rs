@@ -26,6 +26,7 @@ pub fn needs_parentheses(e: &Expr) -> bool {
         | ExprKind::Name(_)
         | ExprKind::Paren(_)
         | ExprKind::List(_)
+        | ExprKind::Record(_)
         | ExprKind::Call(..)
         | ExprKind::Field(..)
         | ExprKind::Index(..) => false,

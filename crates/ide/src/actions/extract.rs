@@ -27,9 +27,13 @@ pub fn to_param(analysis: &Analysis, selected: &Range<usize>) -> Option<Change> 
     let name = free_name(analysis, wanted);
     let ty = match parm.and_then(|parm| parm.ty.as_ref()).map(|ty| &ty.kind) {
         Some(TypeExprKind::Named(word)) if word == "int" || word == "length" => format!(": {word}"),
-        Some(TypeExprKind::Named(_) | TypeExprKind::List(_) | TypeExprKind::Fn(..)) | None => {
-            String::new()
-        }
+        Some(
+            TypeExprKind::Named(_)
+            | TypeExprKind::List(_)
+            | TypeExprKind::Fn(..)
+            | TypeExprKind::Record(_),
+        )
+        | None => String::new(),
     };
     let allowed = parm.and_then(|parm| limits(parm.range.as_ref()?)).unwrap_or(UNLIMITED);
     let around = values_around(value, unit, allowed, ty == ": int");
@@ -63,6 +67,7 @@ fn fixes(node: Node<'_>, number: &Expr) -> bool {
             | ExprKind::If(..)
             | ExprKind::Lambda(..)
             | ExprKind::List(_)
+            | ExprKind::Record(_)
             | ExprKind::Call(..)
             | ExprKind::Field(..)
             | ExprKind::Unary(..)

@@ -2,7 +2,7 @@
 
 use sdfc_lang::hir::Type;
 use sdfc_lang::library::describe_declaration;
-use sdfc_lang::receivers::{kernel_takes, takes};
+use sdfc_lang::receivers::{kernel_takes, material_fields, takes};
 use sdfc_syntax::ast::Decl;
 
 use super::item::{Completion, CompletionKind};
@@ -13,9 +13,9 @@ use crate::library::library;
 /// Returns the components of a value, and what can be called with it as the first argument: the
 /// file's declarations, those of the library, and the functions of the kernel.
 pub fn members(analysis: &Analysis, ty: &Type) -> Vec<Completion> {
-    let mut found: Vec<Completion> = components(ty)
-        .iter()
-        .map(|name| Completion::new(CompletionKind::Property, *name, 1).detail("number"))
+    let mut found: Vec<Completion> = parts(ty)
+        .into_iter()
+        .map(|(name, ty)| Completion::new(CompletionKind::Property, name, 1).detail(ty))
         .collect();
     let takes = |decl: &&Decl| {
         decl.signature.parms.first().is_some_and(|parm| takes(parm, ty))
@@ -40,14 +40,28 @@ pub fn members(analysis: &Analysis, ty: &Type) -> Vec<Completion> {
     found
 }
 
-/// The components that a type has; of the many orders, the usual ones.
-fn components(ty: &Type) -> &'static [&'static str] {
+/// The parts that a value of a type has, with their types; of the many orders of components, the
+/// usual ones.
+fn parts(ty: &Type) -> Vec<(String, String)> {
+    let components = |names: &[&str]| {
+        let of_width = |name: &str| match name.len() {
+            1 => "number".to_owned(),
+            width => format!("vec{width}"),
+        };
+        names.iter().map(|name| ((*name).to_owned(), of_width(name))).collect()
+    };
     match ty {
-        Type::Vec(2) => &["x", "y", "yx"],
-        Type::Vec(3) => &["x", "y", "z", "xy", "xz", "yz"],
-        Type::Vec(_) => &["x", "y", "z", "w", "xy", "zw", "xyz"],
-        Type::Color => &["r", "g", "b", "a", "rgb"],
-        Type::Range(_) => &["lo", "hi"],
+        Type::Vec(2) => components(&["x", "y", "yx"]),
+        Type::Vec(3) => components(&["x", "y", "z", "xy", "xz", "yz"]),
+        Type::Vec(_) => components(&["x", "y", "z", "w", "xy", "zw", "xyz"]),
+        Type::Color => components(&["r", "g", "b", "a", "rgb"]),
+        Type::Range(of) => ["lo", "hi"].map(|end| (end.to_owned(), of.to_string())).to_vec(),
+        Type::Record(fields) => {
+            fields.iter().map(|(name, ty)| (name.clone(), ty.to_string())).collect()
+        }
+        Type::Material => {
+            material_fields().map(|(name, ty)| (name.to_owned(), ty.to_string())).to_vec()
+        }
         Type::Number
         | Type::Int
         | Type::Angle
@@ -56,8 +70,7 @@ fn components(ty: &Type) -> &'static [&'static str] {
         | Type::List(_)
         | Type::Fn(..)
         | Type::Shape(_)
-        | Type::Material
         | Type::Shadow
-        | Type::Error => &[],
+        | Type::Error => Vec::new(),
     }
 }

@@ -66,7 +66,7 @@ impl<'a> Checker<'a> {
     pub(super) fn parameter_for_value(
         &mut self,
         callee: Callee,
-        parameters: &[ParameterSignature<'a>],
+        parameters: &[ParameterSignature],
         given: &Given<'a>,
     ) -> Option<Diagnostic> {
         let Value::Expr(ast::Expr { kind: ast::ExprKind::Name(name), span }) = given.value else {

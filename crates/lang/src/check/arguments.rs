@@ -20,7 +20,7 @@ impl<'a> Checker<'a> {
     pub(super) fn arguments(
         &mut self,
         callee: Callee,
-        parameters: &[ParameterSignature<'a>],
+        parameters: &[ParameterSignature],
         given: Vec<Given<'a>>,
     ) -> Vec<Option<Expr>> {
         let bound = self.bind(callee, parameters, given);
@@ -55,7 +55,7 @@ impl<'a> Checker<'a> {
     fn bind(
         &mut self,
         callee: Callee,
-        parameters: &[ParameterSignature<'a>],
+        parameters: &[ParameterSignature],
         given: Vec<Given<'a>>,
     ) -> Vec<Vec<Given<'a>>> {
         let mut bound: Vec<Vec<Given>> = vec![Vec::new(); parameters.len()];
@@ -106,7 +106,7 @@ impl<'a> Checker<'a> {
     fn index_of_named(
         &mut self,
         callee: Callee,
-        parameters: &[ParameterSignature<'a>],
+        parameters: &[ParameterSignature],
         name: &Name,
         bound: &[Vec<Given<'a>>],
     ) -> Option<usize> {
@@ -145,7 +145,7 @@ impl<'a> Checker<'a> {
         e: &'a ast::Expr,
         want: &Type,
         role: Role,
-        free: &[&ParameterSignature<'a>],
+        free: &[&ParameterSignature],
     ) -> Expr {
         let value = self.infer(e);
         let value = match self.try_coerce(value, want) {
@@ -171,7 +171,7 @@ impl<'a> Checker<'a> {
     fn report_missing(
         &mut self,
         callee: Callee,
-        parameters: &[ParameterSignature<'a>],
+        parameters: &[ParameterSignature],
         bound: &[Vec<Given<'a>>],
     ) {
         let missing: Vec<String> = parameters
@@ -194,7 +194,7 @@ impl<'a> Checker<'a> {
     /// The arguments of a variadic parameter, the first of `parameters`: values, lists and `for`.
     fn variadic(
         &mut self,
-        parameters: &[ParameterSignature<'a>],
+        parameters: &[ParameterSignature],
         given: Vec<Given<'a>>,
         role: Role,
         span: Span,
@@ -229,8 +229,8 @@ impl<'a> Checker<'a> {
     fn needs_name(
         &mut self,
         given: &ast::Expr,
-        parameter: &ParameterSignature<'a>,
-        later: &ParameterSignature<'a>,
+        parameter: &ParameterSignature,
+        later: &ParameterSignature,
     ) -> Expr {
         let message = format!("parameters after `{}` must be named", parameter.name);
         let found = Diagnostic::error(Code::ARGUMENTS, given.span, message);
@@ -243,8 +243,8 @@ impl<'a> Checker<'a> {
     fn needs_blend(
         &mut self,
         given: &ast::Expr,
-        parameter: &ParameterSignature<'a>,
-        blend: &ParameterSignature<'a>,
+        parameter: &ParameterSignature,
+        blend: &ParameterSignature,
     ) -> Expr {
         let message = format!("`{}` takes shapes; this is a number", parameter.name);
         let found = Diagnostic::error(Code::TYPE_MISMATCH, given.span, message);

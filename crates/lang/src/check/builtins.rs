@@ -3,16 +3,17 @@
 use sdfc_diagnostics::{Code, Diagnostic, Span};
 use sdfc_graph as graph;
 
-use super::call::{Callee, Given, count};
+use super::call::{Callee, Given, Value, count};
+use super::coerce::bind;
 use super::decl::ParameterSignature;
 use super::kernel::Builtin;
 use super::operators::as_type;
 use super::types::{self, describe, is_scalar, lanes};
 use super::{Checker, poison};
-use crate::hir::{Expr, ExprKind, Kernel, MaterialField, Type};
+use crate::hir::{Expr, ExprKind, Kernel, LocalId, MaterialField, Type};
 
 /// The fields of a material by name.
-const FIELDS: [(&str, MaterialField, Type); 5] = [
+pub(crate) const FIELDS: [(&str, MaterialField, Type); 5] = [
     ("color", MaterialField::Color, Type::Color),
     ("roughness", MaterialField::Roughness, Type::Number),
     ("metallic", MaterialField::Metallic, Type::Number),
@@ -324,8 +325,18 @@ impl<'a> Checker<'a> {
         kernel(Kernel::Material, fields.collect(), Type::Material, span)
     }
 
-    /// Checks `m.with(color: c)`.
-    fn with(&mut self, callee: Callee, given: Vec<Given<'a>>) -> Expr {
+    /// Checks `m.with(color: c)` of a material, or `r.with(name: a)` of a record.
+    fn with(&mut self, callee: Callee, mut given: Vec<Given<'a>>) -> Expr {
+        let first = given.first_mut().filter(|given| given.name.is_none());
+        if let Some(first) = first
+            && let Value::Expr(e) = first.value
+        {
+            *first = Given::done(self.infer(e));
+        }
+        let ty = given.first().and_then(Given::done_type);
+        if let Some(Type::Record(fields)) = ty.cloned() {
+            return self.changed(callee, &fields, given);
+        }
         let mut parameters = vec![parameter("material", Type::Material, false)];
         parameters.extend(FIELDS.map(|(name, _, ty)| parameter(name, ty, true)));
         let mut arguments = self.arguments(callee, &parameters, given).into_iter();
@@ -338,20 +349,63 @@ impl<'a> Checker<'a> {
         Expr { kind, ty: Type::Material, span: callee.span }
     }
 
-    /// Checks `rgb(r, g, b)`, `hsv(h, s, v)` with h in turns, and `oklch(l, c, h)` with h an angle;
-    /// alpha is optional.
+    /// Checks `rgb(r, g, b)` and its kin; alpha is optional. A vec3 can stand for the first three
+    /// arguments, except of `oklch`. The hue of `hsv` and `hsl` is a number of turns or an angle.
     fn color(&mut self, function: Kernel, callee: Callee, given: Vec<Given<'a>>) -> Expr {
         use Type::{Angle, Number};
         let names = match function {
             Kernel::Hsv => [("h", Number), ("s", Number), ("v", Number)],
+            Kernel::Hsl => [("h", Number), ("s", Number), ("l", Number)],
             Kernel::Oklch => [("l", Number), ("c", Number), ("h", Angle)],
             _ => [("r", Number), ("g", Number), ("b", Number)],
         };
         let mut parameters = names.map(|(name, ty)| parameter(name, ty, false)).to_vec();
         parameters.push(parameter("a", Number, true));
         let span = callee.span;
+        let (joined, given) = self.color_arguments(function, given);
         let arguments = self.arguments(callee, &parameters, given);
         let opaque = |value: Option<Expr>| value.unwrap_or_else(|| number(1.0, span));
-        kernel(function, arguments.into_iter().map(opaque).collect(), Type::Color, span)
+        let arguments = arguments.into_iter().map(opaque).collect();
+        let color = kernel(function, arguments, Type::Color, span);
+        match joined {
+            Some((local, value)) => Expr { span, ..bind(local, "v", value, color) },
+            None => color,
+        }
+    }
+
+    /// The arguments of a function that makes a colour, with a vec3 taken apart and an angle of a
+    /// hue in turns. The vec3 is the value of a variable, which is returned too.
+    fn color_arguments(
+        &mut self,
+        function: Kernel,
+        mut given: Vec<Given<'a>>,
+    ) -> (Option<(LocalId, Expr)>, Vec<Given<'a>>) {
+        let is_first = |given: &Given| given.name.is_none_or(|name| name.text == "h");
+        let Some(first) = given.first_mut().filter(|given| is_first(given)) else {
+            return (None, given);
+        };
+        let Value::Expr(e) = first.value else { return (None, given) };
+        if function == Kernel::Oklch {
+            return (None, given);
+        }
+        let value = self.infer(e);
+        if value.ty == Type::Vec(3) && first.name.is_none() {
+            let (local, mention) = self.name_value(&value);
+            let component = |at| {
+                let kind = ExprKind::Swizzle(Box::new(mention.clone()), vec![at]);
+                Given::done(Expr { kind, ty: Type::Number, span: value.span })
+            };
+            given.splice(..1, [0, 1, 2].map(component));
+            return (Some((local, value)), given);
+        }
+        let value = if value.ty == Type::Angle && matches!(function, Kernel::Hsv | Kernel::Hsl) {
+            let span = value.span;
+            let turn = number(std::f64::consts::TAU, span);
+            kernel(Kernel::Div, vec![as_type(value, &Type::Number), turn], Type::Number, span)
+        } else {
+            value
+        };
+        *first = Given { name: first.name, ..Given::done(value) };
+        (None, given)
     }
 }

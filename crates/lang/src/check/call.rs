@@ -41,6 +41,14 @@ impl<'a> Given<'a> {
         Self { name: None, value: Value::Done(Element::One(value), ty), span }
     }
 
+    /// The type of a value that is already checked.
+    pub(super) fn done_type(&self) -> Option<&Type> {
+        match &self.value {
+            Value::Done(_, ty) => Some(ty),
+            Value::Expr(_) | Value::Element(_) => None,
+        }
+    }
+
     pub(super) fn of(arg: &'a ast::Arg) -> Self {
         let (value, span) = match &arg.value {
             ast::Element::Expr(e) => (Value::Expr(e), e.span),
@@ -75,14 +83,41 @@ impl<'a> Checker<'a> {
             }
             Ast::Field(base, name) => {
                 let callee = Callee { name: &name.text, at: name.span, span };
-                let given = std::iter::once(Given::plain(base)).chain(given);
-                self.call_name(callee, given.collect())
+                let given: Vec<_> = std::iter::once(Given::plain(base)).chain(given).collect();
+                match self.look_up(callee.name) {
+                    Some(_) => self.call_name(callee, given),
+                    None => self.unknown_method(callee, base, given),
+                }
             }
             _ => {
                 let function = self.infer(callee);
                 self.apply(function, None, given.collect(), span)
             }
         }
+    }
+
+    /// Reports `x.f(...)` if nothing is called f. It may be a field of the record x.
+    fn unknown_method(
+        &mut self,
+        callee: Callee,
+        base: &'a ast::Expr,
+        mut given: Vec<Given<'a>>,
+    ) -> Expr {
+        let value = self.infer(base);
+        let is_field = matches!(&value.ty, Type::Record(fields)
+            if fields.iter().any(|(name, _)| name == callee.name));
+        given[0] = Given::done(value);
+        if is_field {
+            let message = format!("`{}` is a field of this record, not a function", callee.name);
+            let found = Diagnostic::error(Code::WRONG_CALL, callee.at, message);
+            let help = format!("to call the value of the field, write (a.{})(...)", callee.name);
+            let (before, after) = (base.span.before(), callee.at.after());
+            let edits = vec![(before, "(".to_owned()), (after, ")".to_owned())];
+            self.report(found.help(help).fix_all("put the field in brackets", edits));
+        } else {
+            self.unknown_name(callee.name, callee.at);
+        }
+        self.give_up(given, callee.span)
     }
 
     fn call_name(&mut self, callee: Callee, given: Vec<Given<'a>>) -> Expr {

@@ -26,7 +26,7 @@ pub(super) enum Role<'r> {
 
 impl Role<'_> {
     /// The role as a subject: ``rotate's `y` ``.
-    fn subject(self) -> String {
+    pub(super) fn subject(self) -> String {
         match self {
             Self::Argument(callee, parameter) => format!("{callee}'s `{parameter}`"),
             Self::Positional(at) => format!("argument {at} of this function"),
@@ -64,6 +64,7 @@ impl Checker<'_> {
             (have, Type::Vec(_)) if is_scalar(&have) => Ok(splat(value, want)),
             (Type::Range(_), Type::Range(want)) => self.coerce_range(value, want),
             (Type::List(have), Type::List(want)) => self.coerce_list(value, &have, want),
+            (Type::Record(have), Type::Record(want)) => self.coerce_record(value, &have, want),
             (Type::Fn(parameters, result), Type::Fn(want, want_result)) => {
                 self.coerce_function(value, (&parameters, &result), (want, want_result))
             }
@@ -269,6 +270,11 @@ fn ways_out(have: &Type, want: &Type, role: Role) -> Vec<String> {
             let made = format!("to combine shapes, declare a function: fn {name}(...) = ...");
             std::iter::once(made).chain(sampled).collect()
         }
+        (Role::Argument(callee, _), Type::Record(fields), ..)
+            if fields.iter().any(|(name, _)| name == callee) =>
+        {
+            vec![format!("to call the field `{callee}`, write (a.{callee})(...)")]
+        }
         (Role::Argument(callee, _), _, Type::Shape(_), None) => {
             vec![format!("pass the shape first: {callee}(a, ...) or a.{callee}(...)")]
         }
@@ -302,8 +308,8 @@ fn way_out(have: &Type, want: &Type) -> Option<String> {
         (Type::Vec(width), Type::Vec(want)) if width < want => {
             Some(format!("add the missing components: vec{want}(v, 0)"))
         }
-        (Type::Vec(3) | Type::Vec(4), Type::Color) => Some("write rgb(v.x, v.y, v.z), or a literal such as #d94f30".into()),
-        (Type::Number | Type::Int | Type::Text, Type::Color) => Some("write a colour as #d94f30, or with rgb, hsv or oklch".into()),
+        (Type::Vec(3), Type::Color) => Some("write rgb(v) for sRGB values, or linear_rgb(v) for amounts of light".into()),
+        (Type::Number | Type::Int | Type::Text, Type::Color) => Some("write a colour as #d94f30, or with rgb, hsl, hsv or oklch".into()),
         (Type::Color, Type::Vec(3)) => Some("take its components: .rgb".into()),
         (Type::Color | Type::Text, Type::Material) => {
             Some("make a material from a colour: material(color: #d94f30)".into())

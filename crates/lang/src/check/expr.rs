@@ -3,6 +3,7 @@
 use sdfc_diagnostics::{Code, Diagnostic, Span};
 use sdfc_syntax::ast::{self, ExprKind as Ast, Name, Unit};
 
+use super::builtins::FIELDS;
 use super::coerce::Role;
 use super::types::{self, describe, lanes};
 use super::{Checker, lambda, poison};
@@ -31,6 +32,7 @@ impl<'a> Checker<'a> {
             Ast::If(condition, yes, no) => self.infer_if(condition, yes, no, span),
             Ast::Lambda(signature, body) => self.infer_lambda(signature, body, span),
             Ast::List(elements) => self.infer_brackets(elements, span),
+            Ast::Record(fields) => self.infer_record(fields, span),
             Ast::Call(callee, args) => self.infer_call(callee, args, span),
             Ast::Field(base, name) => self.infer_field(base, name, span),
             Ast::Index(base, index) => self.infer_index(base, index, span),
@@ -47,7 +49,11 @@ impl<'a> Checker<'a> {
             self.note_expected(name, want);
         }
         let value = self.with_stack(|checker| checker.check_inner(e, want, role));
-        if matches!(e.kind, Ast::Block(..) | Ast::If(..) | Ast::Lambda(..) | Ast::List(_)) {
+        let passes_type_on = matches!(
+            e.kind,
+            Ast::Block(..) | Ast::If(..) | Ast::Lambda(..) | Ast::List(_) | Ast::Record(_)
+        );
+        if passes_type_on {
             self.note_type(e.span, &value.ty);
         }
         value
@@ -79,6 +85,9 @@ impl<'a> Checker<'a> {
                 self.coerce(value, want, role)
             }
             (Ast::List(elements), Type::List(of)) => self.check_list(elements, of, span, role),
+            (Ast::Record(fields), Type::Record(want)) => {
+                self.check_record(fields, want, span, role)
+            }
             (Ast::List(elements), Type::Fn(..)) => {
                 let value = self.infer_brackets(elements, span);
                 self.coerce(value, want, role)
@@ -123,11 +132,21 @@ impl<'a> Checker<'a> {
         branch(condition, yes, no, span)
     }
 
-    /// Checks `base.name` without a call: a swizzle, or an end of a range.
+    /// Checks `base.name` without a call: a swizzle, a field of a record or material, or an end of
+    /// a range.
     fn infer_field(&mut self, base: &'a ast::Expr, name: &'a Name, span: Span) -> Expr {
         let base = self.infer(base);
         if types::poisoned(&base.ty) {
             return poison(span);
+        }
+        if let Type::Record(of) = &base.ty {
+            let of = of.clone();
+            return self.field(base, &of, name, span);
+        }
+        if let (Type::Material, Some((_, field, ty))) =
+            (&base.ty, FIELDS.into_iter().find(|(field, ..)| *field == name.text))
+        {
+            return Expr { kind: ExprKind::MaterialField(Box::new(base), field), ty, span };
         }
         if let (Type::Range(of), "lo" | "hi") = (&base.ty, name.text.as_str()) {
             let ty = (**of).clone();
@@ -156,6 +175,9 @@ impl<'a> Checker<'a> {
                 &"rgba"[..usize::from(lanes(ty).unwrap_or(4)).min(4)]
             )),
             (_, Type::Range(_)) => found.help("a range has .lo and .hi"),
+            (_, Type::Material) => {
+                found.help("its fields are color, roughness, metallic, emission and occlusion")
+            }
             (_, _) => found,
         };
         self.report(found);

@@ -4,6 +4,7 @@ use sdfc_diagnostics::{Code, Diagnostic};
 
 use super::builtins::{kernel, parameter};
 use super::call::{Callee, Given, Value, is_lambda};
+use super::coerce::Role;
 use super::lambda::arity_of;
 use super::operators::as_type;
 use super::types::{self, describe, is_scalar};
@@ -25,7 +26,7 @@ impl<'a> Checker<'a> {
             let positional = given.iter().take_while(|g| g.name.is_none()).count();
             named.or((at < positional).then_some(at))
         };
-        let over = index_of("over", 0, &given).and_then(|at| done_type(&given[at]));
+        let over = index_of("over", 0, &given).and_then(|at| given[at].done_type().cloned());
         let state = index_of("start", 1, &given).map(|at| {
             let value = self.one_value(given[at].clone());
             let value = self.as_state(value, callee);
@@ -94,14 +95,15 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// Checks the state of a loop: a number or a vector.
+    /// Checks the state of a loop: a number, a bool, a vector, or a record of these.
     fn as_state(&mut self, value: Expr, callee: Callee) -> Expr {
-        match &value.ty {
-            ty if is_scalar(ty) => as_type(value, &Type::Number),
-            Type::Vec(_) | Type::Color | Type::Error => value,
-            _ => {
+        match state_of(&value.ty) {
+            Some(ty) if ty == value.ty => value,
+            Some(ty) if is_scalar(&ty) => as_type(value, &ty),
+            Some(ty) => self.coerce(value, &ty, Role::The("the state")),
+            None => {
                 let message = format!(
-                    "the state of `{}` must be a number or a vector; this is {}",
+                    "the state of `{}` must be a number, bool, vector or record of these; this is {}",
                     callee.name,
                     describe(&value.ty)
                 );
@@ -112,14 +114,26 @@ impl<'a> Checker<'a> {
     }
 }
 
-/// The type of an argument that is already checked.
-fn done_type(given: &Given) -> Option<Type> {
-    match &given.value {
-        Value::Done(_, ty) => Some(ty.clone()),
-        Value::Expr(_) | Value::Element(_) => None,
+/// The type of a loop's state that starts with a value of this type. Numbers can change to any
+/// other number.
+fn state_of(start: &Type) -> Option<Type> {
+    match start {
+        Type::Number | Type::Int | Type::Angle => Some(Type::Number),
+        Type::Bool | Type::Vec(_) | Type::Color | Type::Error => Some(start.clone()),
+        Type::Record(fields) => {
+            let field = |(name, ty): &(String, Type)| Some((name.clone(), state_of(ty)?));
+            Some(Type::Record(fields.iter().map(field).collect::<Option<_>>()?))
+        }
+        Type::Text
+        | Type::Range(_)
+        | Type::List(_)
+        | Type::Fn(..)
+        | Type::Shape(_)
+        | Type::Material
+        | Type::Shadow => None,
     }
 }
 
 fn over_type(given: &[Given], at: Option<usize>) -> Type {
-    at.and_then(|at| done_type(&given[at])).unwrap_or(Type::Error)
+    at.and_then(|at| given[at].done_type().cloned()).unwrap_or(Type::Error)
 }

@@ -44,7 +44,7 @@ pub(super) enum Builtin {
     Material,
     /// `with`
     With,
-    /// `rgb`, `hsv`, `oklch`
+    /// `rgb`, `linear_rgb`, `hsv`, `hsl`, `oklch`
     Color(Kernel),
     /// `soft`
     Soft,
@@ -173,7 +173,7 @@ pub(crate) const ROWS: &[Row] = rows! {
     }
     "sequences" {
         "len" Builtin::Len, "len(list)", "The number of elements of a list, a vector or a range of ints.", "len([5, 6, 7])";
-        "iterate" Builtin::Iterate, "iterate(over, start, step, while: fn(s) = true)", "A loop, the only one of the language. The state starts as `start`; each iteration replaces it by `step(state)` or `step(state, item)`. There is one iteration for each item of `over`, which is a count, a range or a list; the loop ends early when `while` is false.", "iterate(5, 1, fn(s) = s * 2)";
+        "iterate" Builtin::Iterate, "iterate(over, start, step, while: fn(s) = true)", "A loop, the only one of the language. The state starts as `start`: a number, a bool, a vector, or a record of these. Each iteration replaces it by `step(state)` or `step(state, item)`. There is one iteration for each item of `over`, which is a count, a range or a list; the loop ends early when `while` is false.", "iterate(5, 1, fn(s) = s * 2)";
         "hash" Builtin::Hash(K::Hash), "hash(a, ...)", "A pseudorandom number from 0 to 1, computed from the arguments rounded down; the same on every device.", "hash(7, [1, 2, 3])";
         "hash3" Builtin::Hash(K::Hash3), "hash3(a, ...)", "Three pseudorandom numbers from 0 to 1, computed from the arguments rounded down.", "hash3(7)";
     }
@@ -184,11 +184,13 @@ pub(crate) const ROWS: &[Row] = rows! {
     }
     "materials and light" {
         "material" Builtin::Material, "material(color: #999, roughness: 0.5, metallic: 0, emission: #000, occlusion: 1)", "A material. `color` is the base colour, `roughness` goes from 0 (mirror) to 1 (matt), `metallic` from 0 to 1, `emission` is light that the surface gives off, `occlusion` goes from 1 (all light) over 0 (no ambient light) to -1 (no light at all).", "material(color: #d4af37, roughness: 0.2, metallic: 1)";
-        "with" Builtin::With, "m.with(color: c, ...)", "A copy of a material with some fields changed.", "material().with(roughness: 0.1)";
+        "with" Builtin::With, "m.with(color: c, ...)", "A copy of a material, or of a record, with some fields changed.", "material().with(roughness: 0.1)";
         "normal" Builtin::SurfaceVector(SurfaceVector::Normal), "normal", "In a material: the unit vector that points out of the surface, in the coordinates of the scene.", "fn(q: vec3) = mix(#7a6a58, #ffffff, saturate(4 * normal.y - 2))";
         "view" Builtin::SurfaceVector(SurfaceVector::View), "view", "In a material: the unit vector from the surface to the eye, in the coordinates of the scene. In a reflection it points back along the reflected ray. Meshes and fields have no eye: there it is `normal`.", "fn(q: vec3) = mix(#203040, #ffffff, pow(1 - saturate(dot(normal, view)), 3))";
-        "rgb" Builtin::Color(K::Rgb), "rgb(r, g, b, a: 1)", "A colour from sRGB red, green and blue, each from 0 to 1.", "rgb(1, 0.5, 0)";
-        "hsv" Builtin::Color(K::Hsv), "hsv(h, s, v, a: 1)", "A colour from hue in turns, saturation and value.", "hsv(0.3, 0.8, 1)";
+        "rgb" Builtin::Color(K::Rgb), "rgb(r, g, b, a: 1)", "A colour from sRGB red, green and blue, each from 0 to 1, as in colour literals. A vec3 can stand for the three.", "rgb(1, 0.5, 0)";
+        "linear_rgb" Builtin::Color(K::LinearRgb), "linear_rgb(r, g, b, a: 1)", "A colour from amounts of light, as in `.rgb` of a colour. They can be above 1. A vec3 can stand for the three.", "linear_rgb(#ffb347.rgb * 2)";
+        "hsv" Builtin::Color(K::Hsv), "hsv(h, s, v, a: 1)", "A colour from hue, saturation and value. The hue is a number of turns or an angle: 0 is red.", "hsv(0.3, 0.8, 1)";
+        "hsl" Builtin::Color(K::Hsl), "hsl(h, s, l, a: 1)", "A colour from hue, saturation and lightness, as in CSS. The hue is a number of turns or an angle: 0 is red.", "hsl(210deg, 0.6, 0.5)";
         "oklch" Builtin::Color(K::Oklch), "oklch(l, c, h, a: 1)", "A colour from perceptual lightness, chroma and hue (Oklch, Ottosson 2020); h is an angle.", "oklch(0.7, 0.15, 150deg)";
         "hard" Builtin::Hard, "hard", "A hard shadow, for a light's `shadow`.", "hard";
         "soft" Builtin::Soft, "soft(sharpness)", "A soft shadow, for a light's `shadow`: the penumbra is 1 / sharpness of the distance to the occluder wide. Beside a shape whose field is less than the distance, such as a blend, it is wider.", "soft(8)";
@@ -217,8 +219,8 @@ pub fn takes_first(name: &str, ty: &Type) -> bool {
         Builtin::Len => matches!(ty, Type::List(_) | Type::Range(_) | Type::Vec(_)),
         Builtin::Iterate => matches!(ty, Type::List(_) | Type::Range(_) | Type::Int),
         Builtin::Bounds | Builtin::AtPoint(_) => matches!(ty, Type::Shape(_)),
-        Builtin::With => *ty == Type::Material,
-        Builtin::Color(_) => matches!(ty, Type::Number | Type::Int),
+        Builtin::With => matches!(ty, Type::Material | Type::Record(_)),
+        Builtin::Color(_) => matches!(ty, Type::Number | Type::Int | Type::Vec(3)),
         Builtin::GlyphCurves => *ty == Type::Text,
         Builtin::Str => *ty == Type::Text || is_scalar(ty),
     }

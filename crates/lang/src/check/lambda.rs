@@ -48,7 +48,7 @@ impl<'a> Checker<'a> {
         let ty = Type::Fn(parameters.clone(), Box::new(body.ty.clone()));
         let names = signature.parms.iter().map(|parm| parm.name.text.clone()).collect();
         let lambda = Lambda { captures, parameters, names, locals, lipschitz, requires, body };
-        self.limit_depth(Expr { kind: ExprKind::Lambda(Box::new(lambda)), ty, span })
+        self.limit_type(Expr { kind: ExprKind::Lambda(Box::new(lambda)), ty, span })
     }
 
     fn lambda_parameters(
@@ -192,6 +192,7 @@ impl<'a> Names<'a> {
                 self.expr(body);
             }
             Ast::List(elements) => elements.iter().for_each(|element| self.element(element)),
+            Ast::Record(fields) => fields.iter().for_each(|field| self.expr(&field.value)),
             Ast::Call(callee, args) => {
                 self.expr(callee);
                 args.iter().for_each(|Arg { value, .. }| self.element(value));

@@ -91,7 +91,7 @@ impl<'a> Checker<'a> {
             .into_iter()
             .map(|(element, _)| self.coerce_element(element, &ty, role))
             .collect();
-        self.limit_depth(list(elements, ty, span))
+        self.limit_type(list(elements, ty, span))
     }
 
     /// Checks an element, against the type in `want` if there is one. Returns its type too.

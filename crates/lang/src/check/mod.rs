@@ -10,12 +10,12 @@
 //! - `overload`: which declaration a call refers to;
 //! - `call`, `arguments`: how arguments are assigned to parameters;
 //! - `kernel`, `builtins`, `math`, `iterate`: the functions of the kernel;
-//! - `operators`, `list`, `block`, `lambda`, `expr`: the forms of expressions;
+//! - `operators`, `list`, `records`, `block`, `lambda`, `expr`: the forms of expressions;
 //! - `types`, `coerce`: which value can be used where;
 //! - `decl`, `clauses`: declarations, which are checked when they are first mentioned;
 //! - `top`: the top level of a file, which drives the others;
 //! - `order`: circular dependencies, which are found at the end;
-//! - `record`: tables of names and types for editors.
+//! - `notes`: tables of names and types for editors.
 #![allow(
     clippy::wildcard_enum_match_arm,
     reason = "the rule for all other types and forms is an error message, also for new ones"
@@ -25,7 +25,7 @@ mod advice;
 mod arguments;
 mod block;
 mod body;
-mod builtins;
+pub(crate) mod builtins;
 mod call;
 mod clauses;
 mod coerce;
@@ -37,10 +37,11 @@ mod lambda;
 mod list;
 mod math;
 mod names;
+mod notes;
 mod operators;
 mod order;
 mod overload;
-mod record;
+mod records;
 mod top;
 pub(crate) mod types;
 mod value;
@@ -84,7 +85,8 @@ pub fn check_with_imports(
     scene: (FileId, &ast::File),
 ) -> (Program, Vec<Diagnostic>) {
     let scene = SceneFile { file: scene.0, tree: scene.1, path: "" };
-    let checked = check_items(&whole(library), None, imports, scene, None);
+    let files = SceneFiles { imports, scene, camera: None };
+    let checked = check_items(&whole(library), None, files, None);
     (checked.program, checked.diagnostics)
 }
 
@@ -95,6 +97,15 @@ pub(crate) struct SceneFile<'a> {
     pub tree: &'a ast::File,
     /// See [`Resolver::scene_path`](import::Resolver::scene_path).
     pub path: &'a str,
+}
+
+/// The parsed files of a scene.
+#[derive(Clone, Copy)]
+pub(crate) struct SceneFiles<'a> {
+    pub imports: &'a [Imported],
+    pub scene: SceneFile<'a>,
+    /// A file with the camera that replaces the scene's.
+    pub camera: Option<(FileId, &'a ast::File)>,
 }
 
 /// The result of [`check_items`].
@@ -111,8 +122,7 @@ pub(crate) struct CheckedItems {
 pub(crate) fn check_items<'a>(
     library: &[(FileId, Vec<&'a Item>)],
     look: Option<&'a ast::File>,
-    imports: &'a [Imported],
-    scene: SceneFile<'a>,
+    SceneFiles { imports, scene, camera }: SceneFiles<'a>,
     uses: Option<Uses>,
 ) -> CheckedItems {
     let mut checker = Checker::new(library);
@@ -126,6 +136,9 @@ pub(crate) fn check_items<'a>(
         checker.check_imported(module, &import.tree);
     }
     checker.check_scene(module, scene.file, scene.tree);
+    if let Some((_, camera)) = camera {
+        checker.replace_camera(module, camera);
+    }
     if let Some(look) = look {
         let module = checker.add_module(&look.items, None, true);
         checker.check_look(module, look);

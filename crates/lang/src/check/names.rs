@@ -296,6 +296,7 @@ pub(super) fn first_dimension(decl: &ast::Decl) -> Option<&str> {
                 matches!(word.as_str(), "solid" | "region").then_some(word.as_str())
             }
             ast::TypeExprKind::List(ty) => of(ty),
+            ast::TypeExprKind::Record(fields) => fields.iter().find_map(|field| of(&field.ty)),
             ast::TypeExprKind::Fn(_, result) => of(result),
         }
     }

@@ -297,6 +297,7 @@ fn these(a: &Type, b: &Type) -> String {
         return match a {
             Type::List(_) => "these are lists".into(),
             Type::Fn(..) => "these are functions".into(),
+            Type::Record(_) => "these are records".into(),
             _ => format!("these are {}s", show(a)),
         };
     }
@@ -308,6 +309,15 @@ fn operand_help(op: BinaryOp, a: &Type, b: &Type) -> Option<&'static str> {
     let shape = |ty: &Type| matches!(ty, Type::Shape(_));
     match op {
         BinaryOp::Add if both(shape) => Some("`a | b` is their union"),
+        BinaryOp::Add if both(|ty| matches!(ty, Type::List(_))) => {
+            Some("to join lists, write [for x in a: x, for x in b: x]")
+        }
+        BinaryOp::Add if matches!(a, Type::List(of) if types::same_value(b, of)) => {
+            Some("to append to a list, write [for x in a: x, b]")
+        }
+        BinaryOp::Add if *a == Type::Text || *b == Type::Text => {
+            Some("strings and numbers are joined by str(a, b)")
+        }
         BinaryOp::Mul if both(shape) => Some("`a & b` is their intersection"),
         BinaryOp::And if both(shape) => Some("`a & b` is their intersection"),
         BinaryOp::Or if both(shape) => Some("`a | b` is their union"),

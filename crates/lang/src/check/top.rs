@@ -69,6 +69,20 @@ impl<'a> Checker<'a> {
         }
     }
 
+    /// Replaces the camera of the scene by the one of another file, which sees the scene's names.
+    pub(super) fn replace_camera(&mut self, module: usize, camera: &'a ast::File) {
+        self.program.settings.retain(|setting| setting.kind != SettingKind::Camera);
+        for item in &camera.items {
+            let Item::Expr(e) = item else { continue };
+            let outer = std::mem::replace(&mut self.body, Body::new(module, u32::MAX));
+            if let Some((row, callee, args)) = self.as_setting(e) {
+                self.setting(row, callee, args);
+            }
+            self.leave_top_level(outer);
+        }
+        self.drain();
+    }
+
     /// Checks the declarations of an imported file, but not what it draws or its settings.
     pub(super) fn check_imported(&mut self, module: usize, ast: &'a ast::File) {
         self.import(module, ast);

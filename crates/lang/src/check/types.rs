@@ -113,6 +113,10 @@ pub(crate) fn show(ty: &Type) -> String {
             let parameters: Vec<String> = parameters.iter().map(show).collect();
             format!("fn({}) -> {}", parameters.join(", "), show(result))
         }
+        Type::Record(fields) => {
+            let field = |(name, ty): &(String, Type)| format!("{name}: {}", show(ty));
+            format!("({})", fields.iter().map(field).collect::<Vec<_>>().join(", "))
+        }
         Type::Shape(dim) => shape_word(*dim).into(),
         Type::Material => "material".into(),
         Type::Shadow => "shadow".into(),
@@ -132,6 +136,7 @@ pub(super) fn describe(ty: &Type) -> String {
         Type::Int | Type::Angle => format!("an {}", show(ty)),
         Type::List(_) => format!("a list, {}", show(ty)),
         Type::Fn(..) => format!("a function, {}", show(ty)),
+        Type::Record(_) => format!("a record, {}", show(ty)),
         Type::Shape(Dim::Two) => "a region (2D)".into(),
         Type::Shape(Dim::Three) => "a solid (3D)".into(),
         Type::Error => "unknown".into(),
@@ -148,15 +153,24 @@ pub(super) fn describe(ty: &Type) -> String {
 
 /// The largest nesting depth of a type. The parser limits the depth of declared types; inferred
 /// types could grow by one level with each `let`.
-pub(super) const MAX_DEPTH: usize = 256;
+const MAX_DEPTH: usize = 256;
+/// The largest number of parts of a type. With each `let`, a record could have twice as many.
+const MAX_PARTS: usize = 1024;
 
-/// The nesting depth of a type: functions and lists.
-pub(super) fn depth(ty: &Type) -> usize {
+/// The nesting depth of a type and the number of its parts.
+fn extent(ty: &Type) -> (usize, usize) {
+    let around = |inner: &mut dyn Iterator<Item = &Type>| {
+        let (depth, parts) = inner
+            .map(extent)
+            .fold((0, 0), |(depth, parts), (of, more)| (usize::max(depth, of), parts + more));
+        (1 + depth, 1 + parts)
+    };
     match ty {
-        Type::Range(of) | Type::List(of) => 1 + depth(of),
+        Type::Range(of) | Type::List(of) => around(&mut std::iter::once(&**of)),
         Type::Fn(parameters, result) => {
-            1 + parameters.iter().map(depth).fold(depth(result), usize::max)
+            around(&mut parameters.iter().chain(std::iter::once(&**result)))
         }
+        Type::Record(fields) => around(&mut fields.iter().map(|(_, ty)| ty)),
         Type::Number
         | Type::Int
         | Type::Angle
@@ -167,7 +181,7 @@ pub(super) fn depth(ty: &Type) -> usize {
         | Type::Shape(_)
         | Type::Material
         | Type::Shadow
-        | Type::Error => 0,
+        | Type::Error => (0, 1),
     }
 }
 
@@ -177,6 +191,7 @@ pub(super) fn poisoned(ty: &Type) -> bool {
         Type::Error => true,
         Type::Range(of) | Type::List(of) => poisoned(of),
         Type::Fn(parameters, result) => parameters.iter().any(poisoned) || poisoned(result),
+        Type::Record(fields) => fields.iter().any(|(_, ty)| poisoned(ty)),
         Type::Number
         | Type::Int
         | Type::Angle
@@ -212,6 +227,7 @@ pub(super) fn lanes(ty: &Type) -> Option<u8> {
         | Type::Text
         | Type::Range(_)
         | Type::List(_)
+        | Type::Record(_)
         | Type::Fn(..)
         | Type::Shape(_)
         | Type::Material
@@ -221,11 +237,13 @@ pub(super) fn lanes(ty: &Type) -> Option<u8> {
 }
 
 /// The dimension that an argument's type selects for a declaration with two dimensions: that of the
-/// shape, of the shapes in a list or made by a function, or of the point that a function takes.
+/// shape, of the shapes in a list or record or made by a function, or of the point that a function
+/// takes.
 pub(super) fn dimension(ty: &Type) -> Option<Dim> {
     match ty {
         Type::Shape(dim) => Some(*dim),
         Type::List(of) => dimension(of),
+        Type::Record(fields) => fields.iter().find_map(|(_, ty)| dimension(ty)),
         Type::Fn(parameters, result) => dimension(result).or_else(|| match parameters.first() {
             Some(Type::Vec(2)) => Some(Dim::Two),
             Some(Type::Vec(3)) => Some(Dim::Three),
@@ -246,7 +264,7 @@ pub(super) fn dimension(ty: &Type) -> Option<Dim> {
 }
 
 /// True if a value of type `have` is a value of type `want` without conversion. Ints and angles are
-/// numbers, also inside lists, ranges and functions.
+/// numbers, also inside lists, records, ranges and functions.
 pub(crate) fn same_value(have: &Type, want: &Type) -> bool {
     match (have, want) {
         (Type::Int | Type::Angle, Type::Number) => true,
@@ -255,6 +273,9 @@ pub(crate) fn same_value(have: &Type, want: &Type) -> bool {
             a.len() == b.len()
                 && a.iter().zip(b).all(|(have, want)| same_value(want, have))
                 && same_value(ra, rb)
+        }
+        (Type::Record(a), Type::Record(b)) => {
+            a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.0 == b.0 && same_value(&a.1, &b.1))
         }
         _ => have == want,
     }
@@ -284,6 +305,13 @@ pub(super) fn join(a: &Type, b: &Type) -> Option<Type> {
         (Type::Fn(a, ra), Type::Fn(b, rb)) if a == b => {
             Some(Type::Fn(a.clone(), Box::new(join(ra, rb)?)))
         }
+        (Type::Record(a), Type::Record(b)) if a.len() == b.len() => {
+            let join_field = |(name, ty): &(String, Type)| {
+                let (_, other) = b.iter().find(|(other, _)| other == name)?;
+                Some((name.clone(), join(ty, other)?))
+            };
+            Some(Type::Record(a.iter().map(join_field).collect::<Option<_>>()?))
+        }
         _ => None,
     }
 }
@@ -296,6 +324,9 @@ pub(super) fn mentions_either(ty: &TypeExpr, with_point: bool) -> bool {
         TypeExprKind::Fn(parameters, result) => {
             parameters.iter().any(|ty| mentions_either(ty, with_point))
                 || mentions_either(result, with_point)
+        }
+        TypeExprKind::Record(fields) => {
+            fields.iter().any(|field| mentions_either(&field.ty, with_point))
         }
     }
 }
@@ -313,12 +344,17 @@ pub(super) fn is_generic(kind: DeclKind, signature: &Signature) -> bool {
 }
 
 impl Checker<'_> {
-    /// Reports a value whose type is nested too deeply.
-    pub(super) fn limit_depth(&mut self, value: Expr) -> Expr {
-        if depth(&value.ty) <= MAX_DEPTH {
+    /// Reports a value whose type is nested too deeply or has too many parts.
+    pub(super) fn limit_type(&mut self, value: Expr) -> Expr {
+        let (depth, parts) = extent(&value.ty);
+        if depth <= MAX_DEPTH && parts <= MAX_PARTS {
             return value;
         }
-        let message = format!("this type has more than {MAX_DEPTH} nested functions and lists");
+        let message = if depth > MAX_DEPTH {
+            format!("this type is nested more than {MAX_DEPTH} levels deep")
+        } else {
+            format!("this type has more than {MAX_PARTS} parts")
+        };
         self.report(Diagnostic::error(Code::NESTING, value.span, message));
         poison(value.span)
     }
@@ -332,6 +368,7 @@ impl Checker<'_> {
                 let parameters = parameters.iter().map(|ty| self.resolve_type(ty)).collect();
                 Type::Fn(parameters, Box::new(self.resolve_type(result)))
             }
+            TypeExprKind::Record(fields) => self.resolve_record(fields),
         }
     }
 

@@ -115,7 +115,7 @@ impl<'a> Checker<'a> {
             Target::Fn(id) => {
                 self.needs(Node::Fn(id.0), span);
                 let ty = Type::Fn(parameters, Box::new(signature.result.clone()));
-                self.limit_depth(Expr { kind: ExprKind::FnValue(id), ty, span })
+                self.limit_type(Expr { kind: ExprKind::FnValue(id), ty, span })
             }
             Target::Shape(_) => {
                 let callee = Callee { name, at: span, span };
@@ -179,7 +179,7 @@ impl<'a> Checker<'a> {
             requires: Vec::new(),
             body,
         };
-        self.limit_depth(Expr { kind: ExprKind::Lambda(Box::new(lambda)), ty, span })
+        self.limit_type(Expr { kind: ExprKind::Lambda(Box::new(lambda)), ty, span })
     }
 
     fn let_value(&mut self, index: LetIndex, span: Span) -> Expr {

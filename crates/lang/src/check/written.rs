@@ -38,6 +38,7 @@ fn text(expr: &Expr, depth: usize) -> Option<String> {
         | ExprKind::Block(..)
         | ExprKind::If(..)
         | ExprKind::Lambda(..)
+        | ExprKind::Record(_)
         | ExprKind::Field(..)
         | ExprKind::Index(..)
         | ExprKind::Unary(UnaryOp::Not, _)

@@ -260,6 +260,7 @@ impl<'p> Elaborator<'p> {
         requires: &'p [Require],
     ) -> Outcome<()> {
         for require in requires {
+            self.last_bounds = None;
             let condition = self.number(env, &require.condition)?;
             self.constrains(condition);
             let Some(found) = self.refute(condition) else {
@@ -270,9 +271,24 @@ impl<'p> Elaborator<'p> {
             for (input, at) in &found.inputs {
                 error = error.note(format!("this happens if {input} is {}", show_number(*at)));
             }
+            if let Some(bounds) = self.last_bounds {
+                error = error.note(self.show_bounds(bounds, &found));
+            }
             return Err(self.report(error.note_at(require.span, "required here")));
         }
         Ok(())
+    }
+
+    /// What is known of the bounds that a requirement is about.
+    fn show_bounds(&self, bounds: [NodeId; 2], found: &super::probe::Refutation) -> String {
+        let [lo, hi] = bounds.map(|end| self.value_at(end, found).unwrap_or_default());
+        let is_known = |end: &[f64]| !end.is_empty() && end.iter().all(|lane| lane.is_finite());
+        let shown = format!("{} .. {}", show_lanes(&lo), show_lanes(&hi));
+        if is_known(&lo) && is_known(&hi) {
+            format!("its bounds are {shown}")
+        } else {
+            format!("its bounds are not known on all sides: {shown}; state them with `bounds`")
+        }
     }
 
     /// A counterexample to a condition: it is false always, or for some values of the params.

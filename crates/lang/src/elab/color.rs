@@ -1,4 +1,4 @@
-//! `rgb`, `hsv` and `oklch`: convert numbers and an alpha to linear colours.
+//! `rgb`, `linear_rgb`, `hsv`, `hsl` and `oklch`: convert numbers and an alpha to linear colours.
 
 use sdfc_graph::{NodeId, Unary};
 
@@ -26,11 +26,56 @@ impl<'p> Elaborator<'p> {
         self.joined(at, [red, green, blue].map(Channel::Srgb), alpha)
     }
 
+    /// `linear_rgb(red, green, blue, alpha)`.
+    pub(super) fn linear_rgb(
+        &mut self,
+        env: &mut Env<'p>,
+        at: Application<'p>,
+    ) -> Outcome<Value<'p>> {
+        let [red, green, blue, alpha] = self.numbers(env, at.args)?;
+        self.joined(at, [red, green, blue].map(Channel::Linear), alpha)
+    }
+
     /// `hsv(hue, saturation, value, alpha)`, each in 0..1; a hue of 1 is a full turn.
     pub(super) fn hsv(&mut self, env: &mut Env<'p>, at: Application<'p>) -> Outcome<Value<'p>> {
         let [hue, saturation, value, alpha] = self.numbers(env, at.args)?;
-        let channels = [1.0, 2.0 / 3.0, 1.0 / 3.0].map(|shift| {
-            // value * (1 - saturation * (1 - saturate(|6 fract(hue + shift) - 3| - 1)))
+        let channels = self.pure_hue(hue).map(|pure| {
+            // value * (1 - saturation * (1 - pure))
+            let graph = &mut self.graph;
+            let one = graph.number(1.0);
+            let lack = graph.sub(one, pure);
+            let lack = graph.mul(saturation, lack);
+            let share = graph.sub(one, lack);
+            Channel::Srgb(graph.mul(value, share))
+        });
+        self.joined(at, channels, alpha)
+    }
+
+    /// `hsl(hue, saturation, lightness, alpha)`, each in 0..1; a hue of 1 is a full turn.
+    pub(super) fn hsl(&mut self, env: &mut Env<'p>, at: Application<'p>) -> Outcome<Value<'p>> {
+        let [hue, saturation, lightness, alpha] = self.numbers(env, at.args)?;
+        // The chroma that this lightness allows: saturation * (1 - |2 lightness - 1|)
+        let graph = &mut self.graph;
+        let [one, two, half] = [1.0, 2.0, 0.5].map(|n| graph.number(n));
+        let doubled = graph.mul(lightness, two);
+        let from_grey = graph.sub(doubled, one);
+        let from_grey = graph.abs(from_grey);
+        let room = graph.sub(one, from_grey);
+        let chroma = graph.mul(saturation, room);
+        let channels = self.pure_hue(hue).map(|pure| {
+            // lightness + chroma * (pure - 0.5)
+            let graph = &mut self.graph;
+            let above = graph.sub(pure, half);
+            let above = graph.mul(chroma, above);
+            Channel::Srgb(graph.add(lightness, above))
+        });
+        self.joined(at, channels, alpha)
+    }
+
+    /// Red, green and blue of a hue at full saturation and value: saturate(|6 fract(hue + shift) -
+    /// 3| - 1) with a shift for each.
+    fn pure_hue(&mut self, hue: NodeId) -> [NodeId; 3] {
+        [1.0, 2.0 / 3.0, 1.0 / 3.0].map(|shift| {
             let graph = &mut self.graph;
             let [shift, one, three, six] = [shift, 1.0, 3.0, 6.0].map(|n| graph.number(n));
             let turned = graph.add(hue, shift);
@@ -39,13 +84,8 @@ impl<'p> Elaborator<'p> {
             let ramp = graph.sub(sector, three);
             let ramp = graph.abs(ramp);
             let ramp = graph.sub(ramp, one);
-            let ramp = graph.unary(Unary::Saturate, ramp);
-            let lack = graph.sub(one, ramp);
-            let lack = graph.mul(saturation, lack);
-            let share = graph.sub(one, lack);
-            Channel::Srgb(graph.mul(value, share))
-        });
-        self.joined(at, channels, alpha)
+            graph.unary(Unary::Saturate, ramp)
+        })
     }
 
     /// `oklch(lightness, chroma, hue, alpha)`: lightness in 0..1, hue an angle. The result is

@@ -116,6 +116,8 @@ pub(super) struct Elaborator<'p> {
     pub(super) within: Within,
     /// True if `bounds(a)` was used since this was last set to false.
     pub(super) used_bounds: bool,
+    /// The last value of `bounds(a)`, since this was last set to `None`.
+    pub(super) last_bounds: Option<[NodeId; 2]>,
     /// Instances with the clause `intersect`, by definition.
     pub(super) intersections: BTreeMap<hir::ShapeDefId, PendingIntersections<'p>>,
     /// How params that stand for literals are used.
@@ -163,6 +165,7 @@ impl<'p> Elaborator<'p> {
             missing: None,
             within: Within::Formula,
             used_bounds: false,
+            last_bounds: None,
             intersections: BTreeMap::new(),
             literals: LiteralUses::new(inputs.first_literal),
             inputs,

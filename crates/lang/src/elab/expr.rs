@@ -39,6 +39,8 @@ impl<'p> Elaborator<'p> {
             }
             ExprKind::Frame => Ok(self.frame_value(FrameInput::Frame)),
             ExprKind::List(elements) => Ok(Value::List(self.elements(env, elements)?.into())),
+            ExprKind::Record(fields) => Ok(Value::List(self.all(env, fields)?.into())),
+            ExprKind::Field(record, at) => self.field(env, record, *at),
             ExprKind::Range(lo, hi) => {
                 let (lo, hi) = (self.number(env, lo), self.number(env, hi));
                 Ok(Value::Range(lo?, hi?))
@@ -88,6 +90,7 @@ impl<'p> Elaborator<'p> {
                 }
             }
             ExprKind::Kernel(op, args) => self.kernel(env, Application { op: *op, args, span }),
+            ExprKind::MaterialField(base, field) => self.material_field(env, base, *field),
             ExprKind::With(base, fields) => self.with(env, base, fields),
             ExprKind::Splat(value) => {
                 let value = self.number(env, value)?;
@@ -153,6 +156,14 @@ impl<'p> Elaborator<'p> {
         self.fail(ErrorCode::TYPE_MISMATCH, span, message)
     }
 
+    /// The field of a record with an index.
+    fn field(&mut self, env: &mut Env<'p>, record: &'p Expr, at: usize) -> Outcome<Value<'p>> {
+        match self.eval(env, record)? {
+            Value::List(fields) => fields.get(at).cloned().ok_or(Poison),
+            other => Err(self.unexpected(record.span, "a record", &other)),
+        }
+    }
+
     /// A function value. Equal functions get equal ids.
     pub(super) fn closure(&mut self, code: Code<'p>, captures: Vec<Value<'p>>) -> Value<'p> {
         let key = (code.key(), captures.iter().map(Value::to_arg).collect());
@@ -181,6 +192,32 @@ impl<'p> Elaborator<'p> {
             }
         }
         Ok(Value::Node(self.graph.compose(&lanes)))
+    }
+
+    /// A field of a material. The alpha of its colour is the fraction that covers the colour
+    /// beneath.
+    fn material_field(
+        &mut self,
+        env: &mut Env<'p>,
+        base: &'p Expr,
+        field: MaterialField,
+    ) -> Outcome<Value<'p>> {
+        let material = self.eval(env, base)?;
+        let Value::Material([color, coverage, rough, metal, emit, open]) = material else {
+            return Err(self.unexpected(base.span, "a material", &material));
+        };
+        let one = self.graph.number(1.0);
+        let mut with_alpha = |color, alpha| {
+            let [red, green, blue] = [0, 1, 2].map(|lane| self.graph.component(color, lane));
+            self.graph.compose(&[red, green, blue, alpha])
+        };
+        Ok(Value::Node(match field {
+            MaterialField::Color => with_alpha(color, coverage),
+            MaterialField::Roughness => rough,
+            MaterialField::Metallic => metal,
+            MaterialField::Emission => with_alpha(emit, one),
+            MaterialField::Occlusion => open,
+        }))
     }
 
     /// `m.with(...)`. A colour's alpha is the fraction that covers the colour beneath.

@@ -63,10 +63,9 @@ impl<'p> Elaborator<'p> {
         let is_long = iterations.items.len() > most;
         let least = if is_long { 0 } else { UNROLLED_OPERATIONS };
         if (is_long || self.within == Within::Material && iterations.items.len() > 1)
-            && let Value::Node(start) = state
-            && let Some(end) = self.as_graph_loop(&iterations, start, &steps, least)?
+            && let Some(end) = self.as_graph_loop(&iterations, &state, &steps, least)?
         {
-            return Ok(Value::Node(end));
+            return Ok(end);
         }
         self.unrolled(iterations, state, &steps)
     }
@@ -122,14 +121,12 @@ impl<'p> Elaborator<'p> {
     fn as_graph_loop(
         &mut self,
         iterations: &Iterations<'p>,
-        start: NodeId,
+        start: &Value<'p>,
         steps: &Steps<'p>,
         least: usize,
-    ) -> Outcome<Option<NodeId>> {
+    ) -> Outcome<Option<Value<'p>>> {
         let depth = self.loop_depth;
-        if depth >= MAX_LOOP_DEPTH {
-            return Ok(None);
-        }
+        let Some(init) = parts(start).filter(|_| depth < MAX_LOOP_DEPTH) else { return Ok(None) };
         let Some(item) = self.item(iterations) else { return Ok(None) };
         let around = self.loop_iterations;
         let nested = around.saturating_mul(iterations.items.len());
@@ -142,16 +139,21 @@ impl<'p> Elaborator<'p> {
         let before = self.attempt();
         self.loop_depth += 1;
         self.loop_iterations = nested;
-        let ty = self.graph.ty(start);
-        let state = self.graph.variable(depth, LoopVar::State(0), ty);
-        let body = self.condition(steps, Value::Node(state)).and_then(|condition| {
-            let next = self.next(steps, Value::Node(state), Value::Node(item))?;
-            Ok((condition, next))
+        let variables = (0..)
+            .zip(&init)
+            .map(|(at, &part)| self.graph.variable(depth, LoopVar::State(at), self.graph.ty(part)));
+        let state = with_parts(start, &mut variables.collect::<Vec<_>>().into_iter());
+        let body = self.condition(steps, state.clone()).and_then(|condition| {
+            let next = self.next(steps, state, Value::Node(item))?;
+            Ok((condition, parts(&next)))
         });
         self.loop_depth -= 1;
         self.loop_iterations = around;
-        let (condition, next) = match body {
-            Ok((condition, Value::Node(next))) if self.graph.ty(next) == ty => (condition, next),
+        let types = |parts: &[NodeId]| -> Vec<_> {
+            parts.iter().map(|&part| self.graph.ty(part)).collect()
+        };
+        let (condition, step) = match body {
+            Ok((condition, Some(next))) if types(&next) == types(&init) => (condition, next),
             // A limit that was exceeded would be exceeded again.
             Err(poison) if self.stopped => return Err(poison),
             Ok(_) | Err(_) => {
@@ -159,7 +161,7 @@ impl<'p> Elaborator<'p> {
                 return Ok(None);
             }
         };
-        let mut roots = vec![next];
+        let mut roots = step.clone();
         roots.extend(condition);
         let bit = 1 << depth;
         let differs = |&id: &NodeId| {
@@ -169,7 +171,7 @@ impl<'p> Elaborator<'p> {
         let nodes = reachable(&self.graph, &roots);
         let is_outside = |&&id: &&NodeId| self.graph.loops_around(id) & bit == 0;
         let operations = nodes.len() - nodes.iter().filter(is_outside).count();
-        let mut read = nodes.iter().filter(is_outside).chain([&start]);
+        let mut read = nodes.iter().filter(is_outside).chain(&init);
         let at_points = read.any(|&id| self.graph.stage(id) == Stage::Point);
         let is_small = operations.saturating_mul(iterations.items.len()) <= least;
         if nodes.iter().any(differs) || !at_points || is_small {
@@ -180,9 +182,9 @@ impl<'p> Elaborator<'p> {
             self.must_stay_constant(limit);
         }
         let (max_iterations, count) = (iterations.items.len() as u32, iterations.limit);
-        let (init, step) = (vec![start], vec![next]);
         let graph_loop = Loop { depth, max_iterations, count, condition, init, step, skip: None };
-        Ok(self.graph.add_loop(graph_loop).first().copied())
+        let mut end = self.graph.add_loop(graph_loop).into_iter();
+        Ok(Some(with_parts(start, &mut end)))
     }
 
     /// The item of an iteration: its index, or an element of a list of constants.
@@ -270,5 +272,28 @@ impl<'p> Elaborator<'p> {
             Value::Closure(closure) => Ok(closure),
             other => Err(self.unexpected(expr.span, "a function", &other)),
         }
+    }
+}
+
+/// The nodes of a state, those of a record in order; `None` if it holds anything else.
+fn parts(state: &Value<'_>) -> Option<Vec<NodeId>> {
+    match state {
+        Value::Node(node) => Some(vec![*node]),
+        Value::List(fields) => {
+            let parts = fields.iter().map(parts).collect::<Option<Vec<_>>>()?;
+            Some(parts.concat())
+        }
+        _ => None,
+    }
+}
+
+/// A state like this one with other nodes.
+fn with_parts<'p>(state: &Value<'p>, nodes: &mut impl Iterator<Item = NodeId>) -> Value<'p> {
+    match state {
+        Value::List(fields) => {
+            Value::List(fields.iter().map(|field| with_parts(field, nodes)).collect())
+        }
+        Value::Node(_) => nodes.next().map_or_else(|| state.clone(), Value::Node),
+        other => other.clone(),
     }
 }

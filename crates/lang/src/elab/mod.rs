@@ -76,6 +76,15 @@ pub fn elaborate(
     }
 }
 
+/// The params of a program.
+pub(crate) fn declared_params(program: &hir::Program, fonts: &Fonts<'_>) -> Vec<sdfc_graph::Param> {
+    let values = CompileValues::new();
+    let inputs = ParamInputs::new(program.params.len(), &values);
+    let mut elaborator = Elaborator::new(program, fonts, inputs);
+    program.params.iter().for_each(|param| elaborator.param(param));
+    elaborator.params
+}
+
 /// The result of one elaboration.
 pub(crate) struct Elaboration {
     /// The scene; `None` after an error.

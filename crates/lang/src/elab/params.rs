@@ -152,6 +152,7 @@ fn kind(ty: &hir::Type) -> ParamKind {
         | hir::Type::Vec(_)
         | hir::Type::Range(_)
         | hir::Type::List(_)
+        | hir::Type::Record(_)
         | hir::Type::Fn(..)
         | hir::Type::Shape(_)
         | hir::Type::Material

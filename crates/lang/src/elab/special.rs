@@ -49,10 +49,7 @@ impl<'p> Elaborator<'p> {
         self.used_bounds = true;
         let over = at.args.first().ok_or(Poison)?;
         match self.eval(env, over)? {
-            Value::Shape(shape) => {
-                let [lo, hi] = self.shape_bounds(shape);
-                Ok(Value::Range(lo, hi))
-            }
+            Value::Shape(shape) => Ok(self.known_bounds(shape)),
             Value::Closure(closure) => self.bounds_of_all(&closure, at),
             other => Err(self.unexpected(at.span, "a shape", &other)),
         }
@@ -75,8 +72,13 @@ impl<'p> Elaborator<'p> {
         let Value::Shape(shape) = shape else {
             return Err(self.unexpected(at.span, "a shape", &shape));
         };
+        Ok(self.known_bounds(shape))
+    }
+
+    fn known_bounds(&mut self, shape: ShapeId) -> Value<'p> {
         let [lo, hi] = self.shape_bounds(shape);
-        Ok(Value::Range(lo, hi))
+        self.last_bounds = Some([lo, hi]);
+        Value::Range(lo, hi)
     }
 
     /// An unknown value of a type, computed from a new outer point: a shape made with it represents

@@ -15,6 +15,7 @@ pub(super) enum Value<'p> {
     Choice(NodeId, usize),
     Text(Rc<str>),
     Range(NodeId, NodeId),
+    /// The elements of a list, or the fields of a record in the order of its type.
     List(Rc<[Value<'p>]>),
     Closure(Rc<Closure<'p>>),
     Shape(ShapeId),
@@ -134,6 +135,7 @@ pub(super) fn node_type(ty: &hir::Type) -> Option<Type> {
         hir::Type::Text
         | hir::Type::Range(_)
         | hir::Type::List(_)
+        | hir::Type::Record(_)
         | hir::Type::Fn(..)
         | hir::Type::Shape(_)
         | hir::Type::Material

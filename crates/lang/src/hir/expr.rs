@@ -44,6 +44,10 @@ pub enum ExprKind {
     Frame,
     /// A list of elements of one type; also the argument of a variadic parameter.
     List(Vec<Element>),
+    /// A record: the values of its fields, in the order of its type.
+    Record(Vec<Expr>),
+    /// A field of a record, by index.
+    Field(Box<Expr>, usize),
     /// `lo..hi`
     Range(Box<Expr>, Box<Expr>),
     /// A vector or colour from 2 to 4 parts, numbers or vectors, joined in order.
@@ -74,6 +78,8 @@ pub enum ExprKind {
     Apply(Box<Expr>, Vec<Expr>),
     /// An operation of the kernel.
     Kernel(Kernel, Vec<Expr>),
+    /// A field of a material.
+    MaterialField(Box<Expr>, MaterialField),
     /// `m.with(field: value)`: a material with fields changed.
     With(Box<Expr>, Vec<(MaterialField, Expr)>),
     /// A number, int or angle as a vector with equal components.

@@ -106,7 +106,9 @@ pub enum Kernel {
     MaterialAt,
     /// Numbers to a colour.
     Rgb,
+    LinearRgb,
     Hsv,
+    Hsl,
     Oklch,
     /// A shadow without penumbra.
     Hard,

@@ -23,6 +23,8 @@ pub enum Type {
     Range(Box<Type>),
     /// A list whose elements have the same type.
     List(Box<Type>),
+    /// A record: the names and types of its fields, in order.
+    Record(Vec<(String, Type)>),
     /// A function.
     Fn(Vec<Type>, Box<Type>),
     /// A solid or a region.

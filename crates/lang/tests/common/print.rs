@@ -91,6 +91,9 @@ fn expr(program: &Program, e: &Expr) -> String {
             let list: Vec<String> = list.iter().map(|e| element(program, e)).collect();
             format!("list[{}]", list.join(", "))
         }
+        ExprKind::Record(fields) => format!("({})", all(program, fields)),
+        ExprKind::Field(base, at) => format!("{}.{at}", show(base)),
+        ExprKind::MaterialField(base, field) => format!("{}.{field:?}", show(base)),
         ExprKind::Range(lo, hi) => format!("{}..{}", show(lo), show(hi)),
         ExprKind::Vector(parts) => format!("[{}]", all(program, parts)),
         ExprKind::Swizzle(base, picked) => format!("{}.{picked:?}", show(base)),

@@ -64,6 +64,9 @@ fn plain(ty: &Type) -> Type {
         Type::Int | Type::Angle => Type::Number,
         Type::List(of) => Type::List(Box::new(plain(of))),
         Type::Range(of) => Type::Range(Box::new(plain(of))),
+        Type::Record(fields) => {
+            Type::Record(fields.iter().map(|(name, ty)| (name.clone(), plain(ty))).collect())
+        }
         Type::Fn(parameters, result) => {
             Type::Fn(parameters.iter().map(plain).collect(), Box::new(plain(result)))
         }
@@ -173,6 +176,17 @@ impl Verifier<'_> {
                 let Type::List(of) = ty else { panic!("{e:?}") };
                 elements.iter().for_each(|element| self.element(element, &of, frame));
             }
+            ExprKind::Record(fields) => {
+                let Type::Record(of) = ty else { panic!("{e:?}") };
+                assert_eq!(fields.len(), of.len());
+                fields.iter().zip(&of).for_each(|(field, (_, ty))| self.wants(field, ty, frame));
+            }
+            ExprKind::Field(base, at) => {
+                self.expr(base, frame);
+                let Type::Record(of) = plain(&base.ty) else { panic!("{e:?}") };
+                assert_eq!(ty, of[*at].1);
+            }
+            ExprKind::MaterialField(base, _) => self.wants(base, &Type::Material, frame),
             ExprKind::Range(lo, hi) => {
                 let Type::Range(of) = ty else { panic!("{e:?}") };
                 self.wants(lo, &of, frame);

@@ -31,5 +31,5 @@ pub(super) fn stays_beside(tree: &Expr) -> bool {
     while let ExprKind::Lambda(_, body) = &tree.kind {
         tree = body;
     }
-    matches!(tree.kind, ExprKind::Block(..) | ExprKind::List(_))
+    matches!(tree.kind, ExprKind::Block(..) | ExprKind::List(_) | ExprKind::Record(_))
 }

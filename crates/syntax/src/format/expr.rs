@@ -4,7 +4,7 @@ use super::brackets::{bracketed, stays_beside};
 use super::doc::{Chain, Doc, NOTHING, chain, concat, group, hard, indent, line, text};
 use super::signature::function;
 use super::source::Source;
-use crate::ast::{Arg, BinaryOp, Element, Expr, ExprKind, Let, Signature, UnaryOp, deeper};
+use crate::ast::{Arg, BinaryOp, Element, Expr, ExprKind, Field, Let, Signature, UnaryOp, deeper};
 use crate::token::TokenKind;
 
 pub(super) fn expr<'a>(source: &mut Source<'a>, tree: &Expr) -> Doc<'a> {
@@ -34,6 +34,11 @@ fn bare_expr<'a>(source: &mut Source<'a>, tree: &Expr) -> Doc<'a> {
         ExprKind::List(elements) => {
             let hug = hugged(elements.iter());
             bracketed(source, elements, element, hug)
+        }
+        ExprKind::Record(fields) => {
+            let hug =
+                Some(0).filter(|_| matches!(&fields[..], [only] if stays_beside(&only.value)));
+            bracketed(source, fields, field, hug)
         }
         ExprKind::Call(..) | ExprKind::Field(..) | ExprKind::Index(..) => postfixes(source, tree),
         ExprKind::Unary(..) => prefixes(source, tree),
@@ -110,6 +115,7 @@ fn is_atom(tree: &Expr) -> bool {
         | ExprKind::If(..)
         | ExprKind::Lambda(..)
         | ExprKind::List(_)
+        | ExprKind::Record(_)
         | ExprKind::Index(..)
         | ExprKind::Binary(..) => false,
     })
@@ -191,7 +197,7 @@ fn hugged<'t>(elements: impl Iterator<Item = &'t Element> + Clone) -> Option<usi
 }
 
 fn is_list(tree: &Expr) -> bool {
-    matches!(tree.kind, ExprKind::List(_))
+    matches!(tree.kind, ExprKind::List(_) | ExprKind::Record(_))
 }
 
 /// Converts `fn(parameters) clauses = body`.
@@ -206,6 +212,11 @@ fn argument<'a>(source: &mut Source<'a>, arg: &Arg) -> Doc<'a> {
     }
     let name = source.take_joined(2);
     concat(vec![name, text(" "), element(source, &arg.value)])
+}
+
+fn field<'a>(source: &mut Source<'a>, tree: &Field) -> Doc<'a> {
+    let name = source.take_joined(2);
+    concat(vec![name, text(" "), expr(source, &tree.value)])
 }
 
 fn element<'a>(source: &mut Source<'a>, tree: &Element) -> Doc<'a> {

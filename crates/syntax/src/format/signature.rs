@@ -7,7 +7,8 @@ use super::brackets::{bracketed, stays_beside};
 use super::doc::{Below, Doc, Equation, concat, equation, group, indent, line, text};
 use super::source::Source;
 use crate::ast::{
-    Clause, ClauseKind, Expr, ExprKind, Parm, Side, Signature, TypeExpr, TypeExprKind, deeper,
+    Clause, ClauseKind, Expr, ExprKind, FieldType, Parm, Side, Signature, TypeExpr, TypeExprKind,
+    deeper,
 };
 
 /// The function that converts an expression to a document.
@@ -95,5 +96,11 @@ pub(super) fn type_expr<'a>(source: &mut Source<'a>, tree: &TypeExpr) -> Doc<'a>
             let from = bracketed(source, from, type_expr, None);
             concat(vec![word, from, text(" "), source.take_spaced(), type_expr(source, to)])
         }
+        TypeExprKind::Record(fields) => bracketed(source, fields, field_type, None),
     })
+}
+
+fn field_type<'a>(source: &mut Source<'a>, tree: &FieldType) -> Doc<'a> {
+    let name = source.take_joined(2);
+    concat(vec![name, text(" "), type_expr(source, &tree.ty)])
 }

@@ -2,8 +2,9 @@
 
 use sdfc_diagnostics::{Code, Diagnostic, Span};
 
+use super::group::Opener;
 use super::{Failed, Parsed, Parser};
-use crate::ast::{Comprehension, DeclKind, Element, Expr, ExprKind, Let};
+use crate::ast::{Comprehension, DeclKind, Element, Expr, ExprKind, Field, Let, Name};
 use crate::literal;
 use crate::token::TokenKind;
 
@@ -96,14 +97,57 @@ impl Parser<'_> {
         self.expected_with(&format!("an expression{context}"), help)
     }
 
-    /// Parses `(e)`.
+    /// Parses `(e)` or `(name: a, ...)`.
     fn parenthesized(&mut self) -> Parsed<ExprKind> {
+        if self.at_record() {
+            return Ok(ExprKind::Record(self.bracketed("field", Self::record_field, |_| None)?));
+        }
         let opener = self.open();
         let depth = self.open.len();
         let inner = self.nested(opener.span, |parser| parser.expr_or_skip(&[]));
         self.open.truncate(depth);
-        self.close(opener, "an operator")?;
+        if self.kind() == TokenKind::Comma {
+            self.unnamed_fields(opener)?;
+        } else {
+            self.close(opener, "an operator")?;
+        }
         Ok(ExprKind::Paren(Box::new(inner?)))
+    }
+
+    /// Reports a bracket with several values without names, and skips the others.
+    fn unnamed_fields(&mut self, opener: Opener) -> Parsed<()> {
+        let message = "several values in `(...)` are the fields of a record, which need names";
+        self.report(
+            Diagnostic::error(Code::EXPECTED, self.span(), message)
+                .help("write (first: ..., second: ...)")
+                .help("a vector or a list is written [...]"),
+        );
+        let start = self.span();
+        self.skip_to(start, &[])?;
+        self.close(opener, "`,`")
+    }
+
+    /// Returns true if the bracket that comes next opens a record or its type.
+    pub(super) fn at_record(&self) -> bool {
+        let name = self.peek(1).kind;
+        (name == TokenKind::Name || name.is_reserved()) && self.peek(2).kind == TokenKind::Colon
+    }
+
+    /// `name: value`
+    fn record_field(&mut self) -> Parsed<Field> {
+        let name = self.field_name()?;
+        let value = self.expr_or_skip(&[TokenKind::Comma])?;
+        Ok(Field { name, value })
+    }
+
+    /// Parses the name of a field and the colon behind it.
+    pub(super) fn field_name(&mut self) -> Parsed<Name> {
+        let name = self.name("a field's name")?;
+        if self.eat(TokenKind::Colon) {
+            return Ok(name);
+        }
+        let help = format!("each field of a record has a name: {}: ...", name.text);
+        self.expected_with("`:`", &[&help])
     }
 
     /// `[a, b, for ...]`

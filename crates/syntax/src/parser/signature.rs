@@ -4,7 +4,7 @@ use sdfc_diagnostics::{Code, Diagnostic};
 
 use super::{Failed, Parsed, Parser};
 use crate::ast::{
-    Clause, ClauseKind, DeclKind, Expr, Parm, Side, Signature, TypeExpr, TypeExprKind,
+    Clause, ClauseKind, DeclKind, Expr, FieldType, Parm, Side, Signature, TypeExpr, TypeExprKind,
 };
 use crate::token::TokenKind;
 
@@ -198,6 +198,9 @@ impl Parser<'_> {
                 self.close(opener, "the type of the elements")?;
                 TypeExprKind::List(Box::new(of))
             }
+            TokenKind::OpenParen => {
+                TypeExprKind::Record(self.bracketed("field", Self::field_type, |_| None)?)
+            }
             TokenKind::Fn => self.nested(start, Self::fn_type)?,
             _ => {
                 return self
@@ -205,6 +208,12 @@ impl Parser<'_> {
             }
         };
         Ok(TypeExpr { kind, span: self.since(start) })
+    }
+
+    /// `name: type`
+    fn field_type(&mut self) -> Parsed<FieldType> {
+        let name = self.field_name()?;
+        Ok(FieldType { name, ty: self.type_expr()? })
     }
 
     /// `fn(A, B) -> R`

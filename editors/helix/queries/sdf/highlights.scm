@@ -16,6 +16,8 @@
 (param name: (identifier) @variable.parameter)
 (parameter name: (identifier) @variable.parameter)
 (named_argument name: (identifier) @variable.parameter)
+(field name: (identifier) @variable.other.member)
+(field_type name: (identifier) @variable.other.member)
 (imported_name (identifier) @function)
 
 (type_name) @type

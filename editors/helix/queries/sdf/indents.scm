@@ -3,6 +3,7 @@
   (arguments)
   (parameters)
   (list)
+  (record)
   (parenthesized_expression)
   (declaration)
 ] @indent

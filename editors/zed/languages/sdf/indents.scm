@@ -2,5 +2,6 @@
 (arguments ")" @end) @indent
 (parameters ")" @end) @indent
 (list "]" @end) @indent
+(record ")" @end) @indent
 (parenthesized_expression ")" @end) @indent
 (declaration) @indent

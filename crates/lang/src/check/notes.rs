@@ -71,7 +71,7 @@ impl<'a> Checker<'a> {
     pub(super) fn note_call(
         &mut self,
         at: Span,
-        parameters: &[ParameterSignature<'a>],
+        parameters: &[ParameterSignature],
         bound: &[Vec<Given<'a>>],
     ) {
         let Some(uses) = self.tables() else { return };
