@@ -25,7 +25,7 @@ struct Noise {
     lipschitz: f64,
 }
 
-const NOISES: [Noise; 7] = [
+const NOISES: [Noise; 14] = [
     Noise { formula: "value_noise(p)", range: [-1.0, 1.0], lipschitz: 3.75 },
     Noise { formula: "gradient_noise(p)", range: [-1.0, 1.0], lipschitz: 3.2243 },
     Noise { formula: "simplex_noise(p)", range: [-1.0, 1.0], lipschitz: 7.81 },
@@ -34,6 +34,13 @@ const NOISES: [Noise; 7] = [
     // Five octaves whose weights sum to 1, each as steep as the first.
     Noise { formula: "fbm(p)", range: [-1.0, 1.0], lipschitz: 8.321 },
     Noise { formula: "turbulence(p)", range: [0.0, 1.0], lipschitz: 8.321 },
+    Noise { formula: "value_noise(p.xz)", range: [-1.0, 1.0], lipschitz: 3.75 },
+    Noise { formula: "gradient_noise(p.xz)", range: [-1.0, 1.0], lipschitz: 3.2243 },
+    Noise { formula: "simplex_noise(p.xz)", range: [-1.0, 1.0], lipschitz: 7.81 },
+    Noise { formula: "voronoi(p.xz)", range: [0.0, 1.0], lipschitz: 1.0 },
+    Noise { formula: "voronoi_walls(p.xz)", range: [0.0, 1.0], lipschitz: 2.0 },
+    Noise { formula: "fbm(p.xz)", range: [-1.0, 1.0], lipschitz: 8.321 },
+    Noise { formula: "turbulence(p.xz)", range: [0.0, 1.0], lipschitz: 8.321 },
 ];
 
 /// Pairs of near points detect jumps at the walls of cells as well as slopes.
@@ -66,4 +73,16 @@ fn a_constant_coordinate_halves_the_number_of_corners() {
     };
     let (flat, full) = (nodes("gradient_noise([p.x, p.z, 0])"), nodes("gradient_noise(p)"));
     assert!(flat * 3 < full * 2, "{flat} of {full}");
+}
+
+/// A vec2 is a point of the plane z = 0.
+#[test]
+fn noises_of_a_plane_are_those_of_space() {
+    for noise in ["value_noise", "gradient_noise", "simplex_noise"] {
+        let field = Field::drawn(&format!("solid it() = {noise}(p.xy)\nit()"));
+        let in_space = Field::drawn(&format!("solid it() = {noise}(vec3(p.xy, 0))\nit()"));
+        for p in [[0.3, 0.8, 0.4], [-5.1, 2.25, 9.0]] {
+            assert_eq!(field.at(p).to_bits(), in_space.at(p).to_bits(), "{noise} at {p:?}");
+        }
+    }
 }

@@ -5,6 +5,7 @@
 
 use rustc_hash::FxHashMap;
 use sdfc_diagnostics::{Code, Diagnostic, Span};
+use sdfc_graph::Dim;
 use sdfc_syntax::ast::{self, DeclKind, Item};
 
 use super::body::LocalIndex;
@@ -138,7 +139,7 @@ impl<'a> Checker<'a> {
         self.report(
             Diagnostic::error(Code::DECLARED_TWICE, name.span, message)
                 .note_at(first, "first declared here")
-                .help("rename one of them; only a `solid` and a `region` whose first parameters are a solid and a region may share a name"),
+                .help("rename one of them; only operators of a solid and of a region, or functions of a vec2 and of a vec3, may share a name"),
         );
     }
 
@@ -278,27 +279,41 @@ pub(super) fn is_private(name: &str) -> bool {
     name.starts_with('_')
 }
 
-/// True if two declarations may share a name: a solid and a region that the first argument
-/// distinguishes.
+/// True if two declarations may share a name, because the first argument distinguishes them: a
+/// solid and a region, or functions of a vec2 and of a vec3.
 fn two_dimensions(a: &ast::Decl, b: &ast::Decl) -> bool {
     let kinds = matches!(
         (a.kind, b.kind),
-        (DeclKind::Solid, DeclKind::Region) | (DeclKind::Region, DeclKind::Solid)
+        (DeclKind::Solid, DeclKind::Region)
+            | (DeclKind::Region, DeclKind::Solid)
+            | (DeclKind::Fn, DeclKind::Fn)
     );
     kinds && first_dimension(a).is_some() && first_dimension(a) != first_dimension(b)
 }
 
-/// The dimension of the first parameter: `solid` or `region`, also for a function that makes one.
-pub(super) fn first_dimension(decl: &ast::Decl) -> Option<&str> {
-    fn of(ty: &ast::TypeExpr) -> Option<&str> {
+/// The dimension of the first parameter: that of the shape that it is or makes; for a `fn`, that of
+/// the point that it is.
+pub(super) fn first_dimension(decl: &ast::Decl) -> Option<Dim> {
+    fn of(ty: &ast::TypeExpr) -> Option<Dim> {
         match &ty.kind {
-            ast::TypeExprKind::Named(word) => {
-                matches!(word.as_str(), "solid" | "region").then_some(word.as_str())
-            }
+            ast::TypeExprKind::Named(word) => match word.as_str() {
+                "region" => Some(Dim::Two),
+                "solid" => Some(Dim::Three),
+                _ => None,
+            },
             ast::TypeExprKind::List(ty) => of(ty),
             ast::TypeExprKind::Record(fields) => fields.iter().find_map(|field| of(&field.ty)),
             ast::TypeExprKind::Fn(_, result) => of(result),
         }
     }
-    of(decl.signature.parms.first()?.ty.as_ref()?)
+    let first = decl.signature.parms.first()?.ty.as_ref()?;
+    match (decl.kind, &first.kind) {
+        (DeclKind::Fn, ast::TypeExprKind::Named(word)) => match word.as_str() {
+            "vec2" => Some(Dim::Two),
+            "vec3" => Some(Dim::Three),
+            _ => None,
+        },
+        (DeclKind::Fn, _) => None,
+        (DeclKind::Solid | DeclKind::Region | DeclKind::Shape, _) => of(first),
+    }
 }

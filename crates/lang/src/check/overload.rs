@@ -68,7 +68,8 @@ impl<'a> Checker<'a> {
         let (span, subject) = (given[0].span, format!("{}'s `{}`", callee.name, name.text));
         let found = match signature.result {
             Type::Shape(Dim::Two) => region_for_solid(span, &format!("{subject} needs a solid")),
-            _ => solid_for_region(span, &format!("{subject} needs a region")),
+            Type::Shape(Dim::Three) => solid_for_region(span, &format!("{subject} needs a region")),
+            _ => return false,
         };
         self.report(found);
         true
@@ -105,11 +106,13 @@ impl<'a> Checker<'a> {
     }
 
     /// Selects among the declarations of a name by the type of the first argument. In a declaration
-    /// that takes shapes of either dimension, the first argument for such a parameter decides.
+    /// that takes shapes or points of either dimension, the first argument for such a parameter
+    /// decides.
     fn pick(&mut self, decls: &[DeclIndex], callee: Callee, given: &mut [Given<'a>]) -> Picked<'a> {
         let first = decls[0];
         let info = &self.decls[first.0];
-        let kernel = match info.ast.kind {
+        let kind = info.ast.kind;
+        let kernel = match kind {
             DeclKind::Fn => None,
             DeclKind::Solid | DeclKind::Region | DeclKind::Shape => {
                 names::kernel_alternative(callee.name)
@@ -134,7 +137,11 @@ impl<'a> Checker<'a> {
         if types::poisoned(&ty) {
             return Picked::Nothing;
         }
-        match (types::dimension(&ty), kernel) {
+        let dim = match kind {
+            DeclKind::Fn => types::dimension_of_point(&ty),
+            DeclKind::Solid | DeclKind::Region | DeclKind::Shape => None,
+        };
+        match (types::dimension(&ty).or(dim), kernel) {
             (None, Some(builtin)) => Picked::Kernel(builtin),
             (dim, _) => {
                 let dim = dim.unwrap_or(Dim::Three);
@@ -221,9 +228,7 @@ impl<'a> Checker<'a> {
 
     /// The declaration whose first parameter has a dimension; the first declaration if none has.
     fn for_dimension(&self, decls: &[DeclIndex], dim: Dim) -> DeclIndex {
-        let word = types::shape_word(dim);
-        let takes =
-            |decl: &&DeclIndex| names::first_dimension(self.decls[decl.0].ast) == Some(word);
+        let takes = |decl: &&DeclIndex| names::first_dimension(self.decls[decl.0].ast) == Some(dim);
         *decls.iter().find(takes).unwrap_or(&decls[0])
     }
 }

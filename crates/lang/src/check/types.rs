@@ -244,11 +244,9 @@ pub(super) fn dimension(ty: &Type) -> Option<Dim> {
         Type::Shape(dim) => Some(*dim),
         Type::List(of) => dimension(of),
         Type::Record(fields) => fields.iter().find_map(|(_, ty)| dimension(ty)),
-        Type::Fn(parameters, result) => dimension(result).or_else(|| match parameters.first() {
-            Some(Type::Vec(2)) => Some(Dim::Two),
-            Some(Type::Vec(3)) => Some(Dim::Three),
-            _ => None,
-        }),
+        Type::Fn(parameters, result) => {
+            dimension(result).or_else(|| parameters.first().and_then(dimension_of_point))
+        }
         Type::Number
         | Type::Int
         | Type::Angle
@@ -260,6 +258,15 @@ pub(super) fn dimension(ty: &Type) -> Option<Dim> {
         | Type::Material
         | Type::Shadow
         | Type::Error => None,
+    }
+}
+
+/// The dimension of a point of this type.
+pub(super) fn dimension_of_point(ty: &Type) -> Option<Dim> {
+    match ty {
+        Type::Vec(2) => Some(Dim::Two),
+        Type::Vec(3) => Some(Dim::Three),
+        _ => None,
     }
 }
 
