@@ -60,6 +60,7 @@ pub fn of_compiler(file: &File) -> BTreeSet<Operator> {
                 open.push(body);
             }
             ExprKind::List(elements) => elements.iter().for_each(|it| element(it, &mut open)),
+            ExprKind::Record(fields) => open.extend(fields.iter().map(|it| &it.value)),
             ExprKind::Call(callee, args) => {
                 open.push(callee);
                 args.iter().for_each(|Arg { value, .. }| element(value, &mut open));
