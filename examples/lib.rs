@@ -15,6 +15,9 @@ macro_rules! scenes {
     };
 }
 
+/// The scene that `sdfc new` writes.
+pub const NEW: &str = include_str!("new.sdf");
+
 /// The scenes of this folder, each of which shows one thing, in alphabetical order.
 pub const BASICS: [(&str, &str); 31] = scenes![
     "balloon" "blends" "booleans" "comprehension" "conditions" "gear" "gyroid_lattice" "lambdas"

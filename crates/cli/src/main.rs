@@ -9,6 +9,7 @@ mod args;
 mod cache;
 mod commands;
 mod console;
+mod driver;
 mod failure;
 mod farm;
 mod interrupt;
@@ -23,7 +24,10 @@ use console::Console;
 use failure::Failure;
 
 fn main() -> ExitCode {
-    let args = Args::parse();
+    let args = Args::parse_from(args::with_command(std::env::args_os()));
+    if args.command.opens_gpu() {
+        driver::silence();
+    }
     let console = Console::new(&args.global);
     match run(&args, &console) {
         Ok(()) => ExitCode::SUCCESS,
@@ -36,6 +40,7 @@ fn main() -> ExitCode {
 
 fn run(args: &Args, console: &Console) -> Result<(), Failure> {
     match &args.command {
+        Command::New(args) => commands::new::run(args, console),
         Command::Check(args) => commands::check::run(args, console),
         Command::Format(args) => commands::format::run(args, console),
         Command::Compile(args) => commands::compile::run(args, console),

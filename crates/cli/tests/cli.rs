@@ -55,10 +55,93 @@ fn names(folder: &Path) -> Vec<String> {
 }
 
 #[test]
-fn a_correct_scene_is_checked_silently() {
+fn a_check_says_what_it_found() {
     let folder = folder();
     let output = run(&folder, &["check", "scene.sdf"]);
-    assert_eq!((status(&output), output.stdout, text(&output.stderr)), (0, vec![], String::new()));
+    let said = text(&output.stderr);
+    assert_eq!((status(&output), output.stdout), (0, vec![]));
+    assert_eq!(said, "scene.sdf: no errors, no warnings\n");
+    let said = text(&run(&folder, &["check", "wrong.sdf"]).stderr);
+    assert!(said.ends_with("wrong.sdf: 2 errors, no warnings\n"), "{said}");
+    let output = run(&folder, &["check", "-q", "scene.sdf"]);
+    assert_eq!(text(&output.stderr), "");
+}
+
+#[test]
+fn a_new_scene_is_correct_and_replaces_nothing() {
+    let folder = folder();
+    let output = run(&folder, &["new", "house"]);
+    assert_eq!(status(&output), 0, "{}", text(&output.stderr));
+    assert_eq!(text(&run(&folder, &["check", "house.sdf"]).stderr).lines().count(), 1);
+    assert_eq!(status(&run(&folder, &["fmt", "--check", "house.sdf"])), 0);
+    let again = run(&folder, &["new", "scene.sdf"]);
+    assert_eq!(status(&again), 2, "{}", text(&again.stderr));
+    assert_eq!(std::fs::read_to_string(folder.path().join("scene.sdf")).unwrap(), SCENE);
+}
+
+#[test]
+fn a_scene_without_a_command_is_drawn() {
+    let folder = folder();
+    let output = run(&folder, &["scene.sdf", "--size", "8x8", "--backend", "cpu"]);
+    assert_eq!(status(&output), 0, "{}", text(&output.stderr));
+    assert!(names(folder.path()).contains(&"scene.png".to_owned()));
+}
+
+#[test]
+fn the_command_line_can_replace_the_camera() {
+    let folder = folder();
+    let scene = "let r = 0.8\nsphere(r)\ncamera(eye: [0, 0, 5])\n";
+    std::fs::write(folder.path().join("scene.sdf"), scene).unwrap();
+    let size = ["--size", "16x16", "--backend", "cpu"];
+    let draw = |out: &str, camera: &[&str]| {
+        let args = [&["render", "scene.sdf", "-o", out], &size[..], camera].concat();
+        run(&folder, &args)
+    };
+    assert_eq!(status(&draw("a.png", &[])), 0);
+    assert_eq!(status(&draw("b.png", &["--camera", "eye: [0, 0, 5 * r]"])), 0);
+    assert_eq!(status(&draw("c.png", &["--camera", "eye: [0, 0, 5]"])), 0);
+    let pixels = |name: &str| image::open(folder.path().join(name)).unwrap();
+    assert_ne!(pixels("a.png"), pixels("b.png"));
+    assert_eq!(pixels("a.png"), pixels("c.png"));
+    let wrong = draw("d.png", &["--camera", "position: [0, 0, 5]"]);
+    assert_eq!(status(&wrong), 1);
+    assert!(text(&wrong.stderr).contains("`camera` has no parameter `position`"));
+}
+
+#[test]
+fn a_watched_scene_is_drawn_again_when_a_file_changes() {
+    let folder = folder();
+    let path = |name: &str| folder.path().join(name);
+    std::fs::write(path("part.sdf"), "let r = 0.5\n").unwrap();
+    std::fs::write(path("scene.sdf"), "import r from \"part.sdf\"\nsphere(r)\n").unwrap();
+    let args = ["render", "scene.sdf", "--watch", "--size", "16x16", "--backend", "cpu"];
+    let mut child = Command::new(env!("CARGO_BIN_EXE_sdfc"))
+        .args(args)
+        .current_dir(folder.path())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    let mut seen = vec![];
+    let mut next = |what: &str| {
+        let is_new = (0..600).any(|_| {
+            std::thread::sleep(std::time::Duration::from_millis(50));
+            let now = std::fs::read(path("scene.png")).unwrap_or_default();
+            let is_new = now != seen;
+            seen = now;
+            is_new
+        });
+        assert!(is_new, "{what}");
+    };
+    next("the first picture");
+    // An error ends nothing.
+    std::fs::write(path("scene.sdf"), "spere(1)\n").unwrap();
+    std::thread::sleep(std::time::Duration::from_millis(500));
+    std::fs::write(path("scene.sdf"), "import r from \"part.sdf\"\nbox(2 * r)\n").unwrap();
+    next("the scene changed");
+    std::fs::write(path("part.sdf"), "let r = 0.25 // smaller\n").unwrap();
+    next("the import changed");
+    child.kill().unwrap();
+    child.wait().unwrap();
 }
 
 #[test]

@@ -6,7 +6,8 @@ mod measurement;
 mod render;
 mod values;
 
-use std::path::PathBuf;
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
 
 use clap::{Parser, Subcommand, ValueEnum};
 
@@ -23,7 +24,7 @@ use values::Params;
 #[command(
     after_help = "Exit codes: 0, success; 1, error in the scene; 2, invalid command line; 3, the \
                   machine cannot do it (no GPU, or a file that cannot be read or written); 130, \
-                  stopped by Ctrl-C."
+                  stopped by Ctrl-C.\n\n`sdfc FILE.sdf` is short for `sdfc render FILE.sdf`."
 )]
 pub struct Args {
     /// Options of all commands.
@@ -63,6 +64,8 @@ pub enum ColorChoice {
 /// The commands.
 #[derive(Debug, Subcommand)]
 pub enum Command {
+    /// Create a scene to start from
+    New(New),
     /// Print all errors and warnings of scenes
     Check(Check),
     /// Format scenes in the standard layout
@@ -102,6 +105,31 @@ pub enum Command {
     Tune(Tune),
 }
 
+impl Command {
+    /// Returns true if the command may open a GPU.
+    pub fn opens_gpu(&self) -> bool {
+        match self {
+            Self::Render(_) | Self::Bench(_) | Self::Lsp(_) | Self::Chart(_) | Self::Tune(_) => {
+                true
+            }
+            Self::New(_)
+            | Self::Check(_)
+            | Self::Format(_)
+            | Self::Compile(_)
+            | Self::Join(_)
+            | Self::Mesh(_)
+            | Self::Contour(_)
+            | Self::Measure(_)
+            | Self::Bake(_)
+            | Self::View(_)
+            | Self::Explain(_)
+            | Self::Doc(_)
+            | Self::Completions(_)
+            | Self::Manual(_) => false,
+        }
+    }
+}
+
 /// Arguments of `completions`.
 #[derive(clap::Args, Debug)]
 pub struct Completions {
@@ -122,6 +150,13 @@ pub struct Lsp {
     /// Has no effect: some editors add it to say what is the default
     #[arg(long, hide = true)]
     pub stdio: bool,
+}
+
+/// Arguments of `new`.
+#[derive(clap::Args, Debug)]
+pub struct New {
+    /// The file, which must not exist; without an extension it gets .sdf
+    pub file: PathBuf,
 }
 
 /// Arguments of `check`.
@@ -176,6 +211,20 @@ pub struct Doc {
     pub json: bool,
 }
 
+/// Returns the arguments of the process with the default command, `render`, before a scene that
+/// stands in place of a command.
+pub fn with_command(args: impl IntoIterator<Item = OsString>) -> Vec<OsString> {
+    let mut args: Vec<OsString> = args.into_iter().collect();
+    let is_option = |arg: &OsString| arg.as_encoded_bytes().starts_with(b"-");
+    let first = args.iter().skip(1).position(|arg| !is_option(arg));
+    if let Some(at) = first
+        && Path::new(&args[at + 1]).extension().is_some_and(|extension| extension == "sdf")
+    {
+        args.insert(1, "render".into());
+    }
+    args
+}
+
 #[cfg(test)]
 mod tests {
     use clap::CommandFactory;
@@ -185,5 +234,18 @@ mod tests {
     #[test]
     fn arguments_are_consistent() {
         Args::command().debug_assert();
+    }
+
+    #[test]
+    fn a_scene_without_a_command_is_drawn() {
+        let with = |line: &str| {
+            let args = with_command(line.split(' ').map(OsString::from));
+            args.join(std::ffi::OsStr::new(" ")).into_string().unwrap()
+        };
+        assert_eq!(with("sdfc a.sdf"), "sdfc render a.sdf");
+        assert_eq!(with("sdfc -q a.sdf --size 2x2"), "sdfc render -q a.sdf --size 2x2");
+        for line in ["sdfc", "sdfc check a.sdf", "sdfc --help", "sdfc a.png", "sdfc view a.sdf"] {
+            assert_eq!(with(line), line);
+        }
     }
 }

@@ -32,6 +32,10 @@ pub struct Render {
     /// When to turn similar parts of the scene into loops
     #[arg(long, value_enum, default_value_t, value_name = "WHEN")]
     pub loops: Loops,
+    /// Another camera than that of the scene, written as the arguments of `camera(...)`, such as
+    /// 'eye: [4, 3, 5], target: [0, 1, 0], fov: 35deg'
+    #[arg(long, value_name = "ARGUMENTS")]
+    pub camera: Option<String>,
     /// Values of params.
     #[command(flatten)]
     pub params: Params,
@@ -43,7 +47,8 @@ pub struct Render {
           value_parser = finite, conflicts_with = "frames")]
     pub time: f64,
     /// Draw frames A to B - 1 as OUT.0007.png and so on, or as one GIF; the time of frame n is
-    /// n / fps. A-B includes B, and A alone is one frame
+    /// n / fps. A-B includes B, and A alone is one frame. To make a film of them: ffmpeg
+    /// -framerate 30 -i OUT.%04d.png -pix_fmt yuv420p OUT.mp4
     #[arg(long, value_name = "A..B", value_parser = sequence::frames)]
     pub frames: Option<Frames>,
     /// Frames per second
@@ -64,6 +69,9 @@ pub struct Render {
     /// Output file for times and counts, as JSON; `-` is stdout. Draws the frame five times
     #[arg(long, value_name = "OUT.json", conflicts_with = "frames")]
     pub stats: Option<PathBuf>,
+    /// Draw the picture again whenever the scene or a file that it imports changes, until Ctrl-C
+    #[arg(long, conflicts_with_all = ["frames", "stats", "region", "chunk", "resume"])]
+    pub watch: bool,
     /// Fail, and write no picture, if a part of it is unproven: if a ray may have missed a surface
     #[arg(long)]
     pub strict: bool,

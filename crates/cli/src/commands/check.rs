@@ -1,5 +1,7 @@
 //! `sdfc check`: all diagnostics of all files.
 
+use sdfc::Diagnostics;
+
 use crate::args::Check;
 use crate::console::Console;
 use crate::failure::Failure;
@@ -21,6 +23,7 @@ pub fn run(args: &Check, console: &Console) -> Result<(), Failure> {
             rows.extend(diagnostics.rows());
         } else {
             super::show(&diagnostics, console);
+            console.note(&summary(&input.name, &diagnostics));
         }
         if diagnostics.has_errors() { Err(Failure::Scene) } else { Ok(()) }
     });
@@ -28,4 +31,16 @@ pub fn run(args: &Check, console: &Console) -> Result<(), Failure> {
         output::to_stdout(&output::json(&rows)?)?;
     }
     result
+}
+
+/// Says what was found in a scene.
+fn summary(name: &str, diagnostics: &Diagnostics) -> String {
+    let errors = diagnostics.iter().filter(|it| it.is_error()).count();
+    let warnings = diagnostics.len() - errors;
+    let count = |count: usize, what: &str| match count {
+        0 => format!("no {what}s"),
+        1 => format!("1 {what}"),
+        _ => format!("{count} {what}s"),
+    };
+    format!("{name}: {}, {}", count(errors, "error"), count(warnings, "warning"))
 }

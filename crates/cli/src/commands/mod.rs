@@ -17,6 +17,7 @@ pub mod lsp;
 pub mod manual;
 pub mod measure;
 pub mod mesh;
+pub mod new;
 pub mod render;
 pub mod tune;
 pub mod view;

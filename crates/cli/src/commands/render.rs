@@ -1,5 +1,7 @@
 //! `sdfc render`: draws pictures of a scene.
 
+mod watch;
+
 use std::cell::OnceCell;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -33,9 +35,15 @@ const MAX_GIF_RATE: f64 = 50.0;
 /// the outputs and the scene are the same file; with `--strict`, a part of the picture is unproven;
 /// the machine cannot draw or write; Ctrl-C.
 pub fn run(args: &Render, console: &Console) -> Result<(), Failure> {
+    let interrupt = Interrupt::watch("stopped; no picture was written", console);
+    if args.watch { watch::run(args, &interrupt, console) } else { once(args, &interrupt, console) }
+}
+
+fn once(args: &Render, interrupt: &Interrupt, console: &Console) -> Result<(), Failure> {
     let Some(Work { frames, region }) = Work::of(args, console)? else { return Ok(()) };
     let outputs = Outputs::new(args, region)?;
     let compiler = super::compiler_with(args.live.live_literals).loops(args.loops.into());
+    let compiler = compiler.camera(args.camera.as_deref());
     let (scene, checksum) =
         super::scene_and_checksum(&args.file, compiler, &args.params.set, console)?;
     if !scene.draws() {
@@ -46,7 +54,6 @@ pub fn run(args: &Render, console: &Console) -> Result<(), Failure> {
     }
     let values = values(&scene, args);
     outputs.check(frames)?;
-    let interrupt = Interrupt::watch("stopped; no picture was written", console);
     let job = Job {
         args,
         console,
@@ -213,7 +220,7 @@ fn values(scene: &Scene, args: &Render) -> FrameValues {
 struct Job<'a> {
     args: &'a Render,
     console: &'a Console,
-    interrupt: Interrupt,
+    interrupt: &'a Interrupt,
     scene: &'a Scene,
     options: PictureOptions,
     painter: OnceCell<Painter<'a>>,

@@ -50,6 +50,9 @@ pub struct Settings {
     pub march: Option<String>,
     /// When parts become loops.
     pub loops: String,
+    /// The camera, as the arguments of `camera(...)`.
+    #[serde(default)]
+    pub camera: Option<String>,
     /// True if the numbers of the scene are params.
     pub live_literals: bool,
     /// The params that were set, as written.
@@ -82,6 +85,7 @@ impl Drawing {
             march,
             backend: _,
             loops,
+            camera,
             params,
             live,
             time,
@@ -91,6 +95,7 @@ impl Drawing {
             isolines,
             depth: _,
             stats: _,
+            watch: _,
             strict: _,
             farm: _,
         } = args;
@@ -108,6 +113,7 @@ impl Drawing {
                 isolines: isolines.map(|spacing| spacing.to_string()),
                 march: march.map(|method| method.name().to_owned()),
                 loops: format!("{:?}", loops).to_lowercase(),
+                camera: camera.clone(),
                 live_literals: live.live_literals,
                 set: set.collect(),
             },
@@ -216,6 +222,11 @@ impl<'a> Recorded<'a> {
             let _ = writeln!(lines, "{checksum} {path}");
         }
         sha256(lines.as_bytes())
+    }
+
+    /// The paths of the files that were read, relative to the folder.
+    pub fn paths(&self) -> Vec<String> {
+        self.files.borrow().keys().cloned().collect()
     }
 
     fn record(&self, path: &str, bytes: &[u8]) {
