@@ -14,6 +14,8 @@ pub const SIZE: [u32; 2] = [160, 120];
 const SAMPLES: u32 = 4;
 const POINTS: u32 = 3;
 
+/// The colour of solids that state none. The tone curve deepens it to that of regions.
+const COLOR: &str = "#eba27c";
 /// The sRGB colours of a region's field: inside, outside, and the outline.
 const INSIDE: [f64; 3] = [217.0, 120.0, 80.0];
 const OUTSIDE: [f64; 3] = [232.0, 236.0, 242.0];
@@ -51,13 +53,21 @@ fn png(entry: &Entry) -> Vec<u8> {
 }
 
 fn scene(entry: &Entry) -> Scene {
-    let compiled = Compiler::new().compile(&entry.name, &entry.example);
+    compiled(entry, &entry.example)
+}
+
+fn compiled(entry: &Entry, text: &str) -> Scene {
+    let compiled = Compiler::new().compile(&entry.name, text);
     compiled.unwrap_or_else(|errors| panic!("{errors}"))
 }
 
 fn solid(entry: &Entry) -> Vec<u8> {
     let options = PictureOptions::new().size(SIZE).backend(Backend::Cpu).samples(Some(SAMPLES));
-    let picture = scene(entry).render(&options, &mut no_progress);
+    let mut scene = scene(entry);
+    if !scene.graph().has_materials {
+        scene = compiled(entry, &format!("({}).color({COLOR})", entry.example));
+    }
+    let picture = scene.render(&options, &mut no_progress);
     picture.unwrap_or_else(|e| panic!("{}: {e}", entry.name)).image.to_srgb8()
 }
 
