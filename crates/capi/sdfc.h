@@ -156,7 +156,7 @@ void sdfc_bytes_free(sdfc_bytes *bytes);
  `options` is a JSON object with the keys of `sdfc_mesh_make` and these, all of them optional;
  null is the same as `{}`. `normal`: the normal of the plane, of any length, by default
  `[0, 0, 1]`. `offset`: the coordinate of the plane along its normal, in scene units, by default
- 0.
+ 0. `arcs`: true if paths may have circular arcs, which are described by their bulges.
 
  Returns null if the plane meets no inside, and in the cases of `sdfc_mesh_make`. Free the
  contour with `sdfc_contour_free`.

@@ -29,6 +29,7 @@ struct ContourKeys {
     error: Option<f64>,
     error_relative: Option<f64>,
     max_cells: Option<u64>,
+    arcs: bool,
 }
 
 /// Makes the closed paths around the section of a scene by a plane, on all cores of the machine.
@@ -36,7 +37,7 @@ struct ContourKeys {
 /// `options` is a JSON object with the keys of `sdfc_mesh_make` and these, all of them optional;
 /// null is the same as `{}`. `normal`: the normal of the plane, of any length, by default
 /// `[0, 0, 1]`. `offset`: the coordinate of the plane along its normal, in scene units, by default
-/// 0.
+/// 0. `arcs`: true if paths may have circular arcs, which are described by their bulges.
 ///
 /// Returns null if the plane meets no inside, and in the cases of `sdfc_mesh_make`. Free the
 /// contour with `sdfc_contour_free`.
@@ -57,17 +58,17 @@ pub unsafe extern "C" fn sdfc_contour_make(
             let keys = self::options::<ContourKeys>(options)?;
             (handle(scene)?, keys, Reporter::new(progress, context))
         };
-        let ContourKeys { normal, offset, error, error_relative, max_cells } = keys;
+        let ContourKeys { normal, offset, error, error_relative, max_cells, arcs } = keys;
         let normal = normal.unwrap_or([0.0, 0.0, 1.0]);
         let no_plane = || {
             let message = format!("no plane has the normal {normal:?} and the offset {offset}");
             Failure::argument(message)
         };
         let plane = Plane::new(normal, offset).ok_or_else(no_plane)?;
-        let options = mesh_options(scene, error, error_relative, max_cells)?;
+        let options = mesh_options(scene, error, error_relative, max_cells)?.has_arcs(arcs);
         let mut report = |at: sdfc::MeshProgress| reporter.report(at.done, at.total);
         let contour = scene.scene.contour(plane, &options, &mut report)?;
-        let described = json(&contour.report(&plane))?;
+        let described = json(&scene.scene.reported(&scene.frame, contour.report(&plane)))?;
         Ok(Contour { contour, described })
     })
 }

@@ -93,7 +93,7 @@ pub unsafe extern "C" fn sdfc_mesh_make(
         let options = mesh_options(scene, error, error_relative, max_cells)?;
         let mut report = |at: sdfc::MeshProgress| reporter.report(at.done, at.total);
         let mesh = scene.scene.mesh(&options, &mut report)?;
-        let described = json(&mesh.report())?;
+        let described = json(&scene.scene.reported(&scene.frame, mesh.report()))?;
         Ok(Mesh { mesh, described })
     })
 }
@@ -245,6 +245,7 @@ pub unsafe extern "C" fn sdfc_measure(
         let max_cells = keys.max_cells.unwrap_or(options.max_cells);
         let options = options.relative(relative).max_cells(max_cells);
         let mut report = |at: sdfc::MeshProgress| reporter.report(at.done, at.total);
-        json(&scene.scene.measure(&options, &mut report)?)
+        let found = scene.scene.measure(&options, &mut report)?;
+        json(&scene.scene.reported(&scene.frame, found))
     })
 }

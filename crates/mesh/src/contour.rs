@@ -6,15 +6,18 @@ use sdfc_graph::Program;
 use sdfc_graph::eval::FrameValues;
 use serde::Serialize;
 
+use crate::arc::Segment;
 use crate::certify::Proof;
-use crate::error::{MeshError, MeshOptions, Progress};
+use crate::curve::{Curve, segments};
+use crate::error::{MeshError, MeshOptions, Progress, shown};
 use crate::field::{Field, LocalField};
 use crate::grid::Grid;
 use crate::make::Maker;
 use crate::mesh::{check, fitting};
-use crate::outline::Outline;
+use crate::outline::{Lines, Outline};
 use crate::plane::Plane;
-use crate::polygon::{area, parents, sides};
+use crate::polygon::{area, parents};
+use crate::simplify::DIVIDED;
 use crate::surface::MeshCertificate;
 use crate::vector::total;
 
@@ -32,8 +35,12 @@ pub struct Contour {
 /// A closed path.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct ContourPath {
-    /// The corners, in scene units. The last one is connected to the first one.
+    /// The ends of lines and arcs, in scene units. The last one is connected to the first one.
     pub points: Vec<[f64; 2]>,
+    /// The bulge of the line or arc from each point to the next one: 0 for a line, else the
+    /// tangent of a quarter of the arc's angle, positive for a counter-clockwise arc. It is at most
+    /// 0.6 in size, so each arc turns by less than 124 degrees.
+    pub bulges: Vec<f64>,
     /// True if the inside of the scene is outside of the path.
     pub is_hole: bool,
     /// The index of the path directly around this one. Paths around a hole are no holes, and the
@@ -109,27 +116,30 @@ pub fn contour(
     progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
 ) -> Result<Contour, MeshError> {
     let field = Field::new(program)?.ok_or(MeshError::NothingDrawn)?;
-    let MeshOptions { bounds, error, max_cells } = *options;
+    let MeshOptions { bounds, error, max_cells, has_arcs } = *options;
     check(bounds, error)?;
     let shadow = plane.shadow(bounds);
     let grid = fitting(error, |error| Grid::around_flat(shadow, error))?;
     let truth = LocalField::new(field.distance(), frame).in_plane(plane);
     let lowered = truth.clone().at_level(-LEVEL * error);
     let maker = Maker { field: &lowered, truth: &truth, grid: &grid, error, max_cells };
-    let (outline, proof) = maker.make::<Outline>(progress)?;
+    let lines = if has_arcs { Lines::AndArcs } else { Lines::Alone };
+    let (outline, proof) = maker.make::<Outline>(lines, progress)?;
     let certificate = ContourCertificate::of(proof);
     if outline.paths.is_empty() {
         let [from, to] = plane.range(bounds);
         let touches = certificate.undecided > 0;
         return Err(MeshError::NoSection { from, to, at: plane.offset(), touches });
     }
-    let parents = parents(&outline.paths);
-    let path = |(points, parent): (Vec<[f64; 2]>, _)| ContourPath {
-        is_hole: area(&points) < 0.0,
+    let divided: Vec<_> = outline.paths.iter().map(|path| path.lines(DIVIDED * error)).collect();
+    let path = |((Curve { points, bulges }, parent), divided): ((Curve, _), &Vec<_>)| ContourPath {
+        is_hole: area(divided) < 0.0,
         points,
+        bulges,
         parent,
     };
-    Ok(Contour { paths: outline.paths.into_iter().zip(parents).map(path).collect(), certificate })
+    let paths = outline.paths.into_iter().zip(parents(&divided)).zip(&divided).map(path).collect();
+    Ok(Contour { paths, certificate })
 }
 
 impl ContourCertificate {
@@ -155,6 +165,7 @@ impl ContourCertificate {
 impl std::fmt::Display for ContourCertificate {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let Self { error, is_proven, undecided, undecided_area, .. } = self;
+        let error = shown(*error);
         if *is_proven {
             return write!(f, "contour and section are proven to be within {error} of each other");
         }
@@ -169,22 +180,30 @@ impl std::fmt::Display for ContourCertificate {
 impl Contour {
     /// Returns the area of the section: that of outer paths less that of holes.
     pub fn area(&self) -> f64 {
-        total(self.paths.iter().map(|path| area(&path.points)))
+        total(self.paths.iter().map(|path| {
+            area(&path.points) + path.segments().map(|segment| segment.area()).sum::<f64>()
+        }))
     }
 
     /// Returns the length of all paths.
     pub fn length(&self) -> f64 {
-        let length = |[a, b]: [[f64; 2]; 2]| (b[0] - a[0]).hypot(b[1] - a[1]);
-        total(self.paths.iter().flat_map(|path| sides(&path.points)).map(length))
+        total(self.paths.iter().flat_map(ContourPath::segments).map(|segment| segment.length()))
     }
 
     /// Returns the lowest and the highest corner of a rectangle around all paths; `None` without
     /// paths.
     pub fn bounds(&self) -> Option<[[f64; 2]; 2]> {
-        let mut points = self.paths.iter().flat_map(|path| &path.points);
-        let first = *points.next()?;
+        let segments = self.paths.iter().flat_map(ContourPath::segments);
+        let mut points = segments.flat_map(|segment| segment.extremes());
+        let first = points.next()?;
         Some(points.fold([first; 2], |[lo, hi], [x, y]| {
-            [[lo[0].min(*x), lo[1].min(*y)], [hi[0].max(*x), hi[1].max(*y)]]
+            [[lo[0].min(x), lo[1].min(y)], [hi[0].max(x), hi[1].max(y)]]
         }))
+    }
+}
+
+impl ContourPath {
+    pub(crate) fn segments(&self) -> impl Iterator<Item = Segment> + '_ {
+        segments(&self.points, &self.bulges)
     }
 }

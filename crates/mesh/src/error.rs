@@ -12,6 +12,9 @@ pub struct MeshOptions {
     pub error: f64,
     /// The most cells that are examined.
     pub max_cells: u64,
+    /// True if contours may have circular arcs; by default they are made of lines alone. Meshes
+    /// ignore it.
+    pub has_arcs: bool,
 }
 
 impl MeshOptions {
@@ -20,13 +23,19 @@ impl MeshOptions {
 
     /// Returns options for a box and an error, in scene units.
     pub fn new(bounds: [[f64; 3]; 2], error: f64) -> Self {
-        Self { bounds, error, max_cells: Self::MAX_CELLS }
+        Self { bounds, error, max_cells: Self::MAX_CELLS, has_arcs: false }
     }
 
     /// Sets the most cells that are examined.
     #[must_use]
     pub fn max_cells(self, max_cells: u64) -> Self {
         Self { max_cells, ..self }
+    }
+
+    /// Sets whether contours may have circular arcs.
+    #[must_use]
+    pub fn has_arcs(self, has_arcs: bool) -> Self {
+        Self { has_arcs, ..self }
     }
 }
 
@@ -61,9 +70,18 @@ pub enum MeshError {
     /// The scene draws nothing.
     #[error("the scene draws nothing: every solid that stands alone on a line is drawn")]
     NothingDrawn,
-    /// The bounds contain nothing.
+    /// Nothing is inside.
     #[error("the scene is empty: the solids that it draws have no inside")]
     Empty,
+    /// No cell has an inside, but it is not proven that there is none.
+    #[error(
+        "no inside was found with the error {}: the scene may have parts that are smaller; state \
+         a smaller error", shown(*error)
+    )]
+    NothingFound {
+        /// The error that was asked for.
+        error: f64,
+    },
     /// The program is not flat.
     #[error("the program is not flat: {0}")]
     NotFlat(#[from] TapeError),
@@ -76,10 +94,14 @@ pub enum MeshError {
         axis: char,
     },
     /// The error is not a positive number.
-    #[error("the error is {0}, but it must be a positive number")]
+    #[error("the error is {}, but it must be a positive number", shown(*_0))]
     Error(f64),
     /// The error is below what the numbers or the grid can resolve.
-    #[error("the error {error} is too small for this scene; the smallest possible one is {least}")]
+    #[error(
+        "the error {} is too small for this scene; the smallest possible one is {}",
+        shown(*error),
+        shown(*least)
+    )]
     TooFine {
         /// The error that was asked for.
         error: f64,
@@ -88,8 +110,11 @@ pub enum MeshError {
     },
     /// The error is greater than the scene.
     #[error(
-        "the error {error} is greater than the scene, whose longest side is {longest}: state at \
-         most {longest}, such as {}", 1e-3 * longest
+        "the error {} is greater than the scene, whose longest side is {}: state at most {1}, such \
+         as {}",
+        shown(*error),
+        shown(*longest),
+        shown(1e-3 * longest)
     )]
     TooCoarse {
         /// The error that was asked for.
@@ -124,8 +149,12 @@ pub enum MeshError {
     OutOfMemory(usize),
     /// The plane of a section meets no inside.
     #[error(
-        "the plane at {at} meets no inside of the scene, whose bounds reach from {from} to {to} \
-         along the plane's normal{}", if *touches { "; it touches a face: move it a little" } else { "" }
+        "the plane at {} meets no inside of the scene, whose bounds reach from {} to {} along the \
+         plane's normal{}",
+        shown(*at),
+        shown(*from),
+        shown(*to),
+        if *touches { "; it touches a face: move it a little" } else { "" }
     )]
     NoSection {
         /// Where the plane is along its normal.
@@ -142,6 +171,12 @@ pub enum MeshError {
     Cancelled,
 }
 
+/// Returns a number with at most 17 digits: very large and very small ones with an exponent.
+pub(crate) fn shown(value: f64) -> String {
+    let is_plain = value == 0.0 || (1e-5..1e16).contains(&value.abs());
+    if is_plain || !value.is_finite() { value.to_string() } else { format!("{value:e}") }
+}
+
 impl MeshError {
     /// True if an option is the cause.
     pub fn is_call(&self) -> bool {
@@ -150,6 +185,7 @@ impl MeshError {
             | Self::TooFine { .. }
             | Self::TooCoarse { .. }
             | Self::TooManyCells { .. }
+            | Self::NothingFound { .. }
             | Self::Resolution { .. }
             | Self::NoSection { .. } => true,
             Self::NothingDrawn
@@ -160,5 +196,21 @@ impl MeshError {
             | Self::OutOfMemory(_)
             | Self::Cancelled => false,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_have_few_digits() {
+        let values = [0.0, 2.0, 0.002, 1e15, 1e300, 5e-324, -1.25e-9];
+        let expected = ["0", "2", "0.002", "1000000000000000", "1e300", "5e-324", "-1.25e-9"];
+        for (value, expected) in values.into_iter().zip(expected) {
+            assert_eq!(shown(value), expected);
+        }
+        let message = MeshError::TooCoarse { error: 1e300, longest: 2.0 }.to_string();
+        assert!(message.len() < 120, "{message}");
     }
 }

@@ -50,11 +50,13 @@
 
 #![allow(clippy::needless_range_loop, reason = "an index is an axis, of several vectors")]
 
+mod arc;
 mod bake;
 mod build;
 mod certify;
 mod clearance;
 mod contour;
+mod curve;
 mod error;
 mod examine;
 mod extent;

@@ -18,20 +18,40 @@ const ROUNDS: u32 = 4;
 
 /// A surface that is made from the cells of a grid.
 pub(crate) trait Surface: Sized {
+    /// What it is made of.
+    type Style: Copy;
+
     /// Makes the surface.
-    fn build(builder: &Builder<'_, '_>, progress: OnProgress<'_>) -> Result<Self, MeshError>;
+    fn build(
+        builder: &Builder<'_, '_>,
+        style: Self::Style,
+        progress: OnProgress<'_>,
+    ) -> Result<Self, MeshError>;
 
     /// Returns the triangles whose error is proven.
     fn triangles(&self) -> &Mesh;
+
+    /// Returns how far the triangles may be from the surface, as a fraction of the error.
+    fn margin(&self) -> f64;
 }
 
 impl Surface for Mesh {
-    fn build(builder: &Builder<'_, '_>, progress: OnProgress<'_>) -> Result<Self, MeshError> {
+    type Style = ();
+
+    fn build(
+        builder: &Builder<'_, '_>,
+        (): Self::Style,
+        progress: OnProgress<'_>,
+    ) -> Result<Self, MeshError> {
         builder.mesh(progress)
     }
 
     fn triangles(&self) -> &Mesh {
         self
+    }
+
+    fn margin(&self) -> f64 {
+        0.0
     }
 }
 
@@ -50,6 +70,7 @@ impl Maker<'_> {
     /// Returns the surface and what is proven about it.
     pub(crate) fn make<S: Surface>(
         &self,
+        style: S::Style,
         progress: OnProgress<'_>,
     ) -> Result<(S, Proof), MeshError> {
         let Self { field, grid, error, max_cells, .. } = *self;
@@ -59,7 +80,7 @@ impl Maker<'_> {
         let mut tree = Tree::new(grid.is_flat);
         let mut signs = Signs::default();
         refiner.grow(&mut tree, vec![grid.root()], progress)?;
-        let mut best = self.attempt::<S>(&refiner, &mut tree, &mut signs, None, progress)?;
+        let mut best = self.attempt::<S>(&refiner, &mut tree, &mut signs, style, None, progress)?;
         for _ in 0..ROUNDS {
             let divided = divide(&mut tree, grid, &best.1.undecided);
             if divided.is_empty() {
@@ -68,7 +89,7 @@ impl Maker<'_> {
             refiner.sizes = Sizes::STRICT;
             refiner.grow(&mut tree, divided, progress)?;
             let before = Some(&best);
-            let next = self.attempt(&refiner, &mut tree, &mut signs, before, progress)?;
+            let next = self.attempt(&refiner, &mut tree, &mut signs, style, before, progress)?;
             let volume = |(_, proof): &(S, Proof)| proof.certificate.undecided_volume;
             if volume(&next) >= volume(&best) {
                 break;
@@ -84,20 +105,23 @@ impl Maker<'_> {
         refiner: &Refiner<'_, '_>,
         tree: &mut Tree,
         signs: &mut Signs,
+        style: S::Style,
         before: Option<&(S, Proof)>,
         progress: OnProgress<'_>,
     ) -> Result<(S, Proof), MeshError> {
         let Self { truth, grid, error, max_cells, .. } = *self;
         refiner.untangle(tree, signs, progress)?;
         let builder = Builder { prober: refiner.prober, grid, tree, signs, error };
-        let surface = S::build(&builder, progress)?;
+        let surface = S::build(&builder, style, progress)?;
         let changes = before.map(|(before, proof)| {
             let mut found = changes(before.triangles(), surface.triangles());
             found.extend(&proof.undecided);
             found
         });
-        let prover = Prover { field: truth, mesh: surface.triangles(), grid, error, changes };
+        let (mesh, rest) = (surface.triangles(), error * (1.0 - surface.margin()));
+        let prover = Prover { field: truth, mesh, grid, error: rest, changes };
         let mut proof = prover.prove(max_cells, progress)?;
+        proof.certificate.error = error;
         if let Some((_, before)) = before {
             proof.certificate.add_proofs(&before.certificate);
         }

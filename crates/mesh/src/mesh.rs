@@ -25,12 +25,17 @@ pub fn mesh(
     progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
 ) -> Result<Mesh, MeshError> {
     let field = Field::new(program)?.ok_or(MeshError::NothingDrawn)?;
-    let MeshOptions { bounds, error, max_cells } = *options;
+    let MeshOptions { bounds, error, max_cells, .. } = *options;
     check(bounds, error)?;
     let grid = fitting(error, |error| Grid::around(bounds, error))?;
     let local = LocalField::new(field.distance(), frame);
     let maker = Maker { field: &local, truth: &local, grid: &grid, error, max_cells };
-    let (mut mesh, proof) = maker.make::<Mesh>(progress)?;
+    let (mut mesh, proof) = maker.make::<Mesh>((), progress)?;
+    if mesh.triangles.is_empty() {
+        // Parts that are far smaller than the error look as if faces touched.
+        let is_empty = proof.certificate.is_proven && proof.certificate.touching_boxes == 0;
+        return Err(if is_empty { MeshError::Empty } else { MeshError::NothingFound { error } });
+    }
     if mesh.open_edges() > 0 {
         return Err(MeshError::Open);
     }
@@ -107,14 +112,14 @@ mod tests {
     fn a_field_that_is_specialized_to_boxes_gives_the_same_mesh_and_certificate() {
         let (program, frame) = (program(), FrameValues::default());
         let options = MeshOptions::new([[-1.0; 3], [1.0; 3]], 0.03);
-        let MeshOptions { bounds, error, max_cells } = options;
+        let MeshOptions { bounds, error, max_cells, .. } = options;
         let field = Field::new(&program).ok().flatten();
         let grid = Grid::around(bounds, error);
         let (Some(field), Some(grid)) = (field, grid) else { panic!("a field and its grid") };
         let whole = LocalField::new(field.distance(), &frame);
         let [local, fixed] = [whole.clone(), whole.fixed()].map(|field| {
             let maker = Maker { field: &field, truth: &field, grid: &grid, error, max_cells };
-            let made = maker.make::<Mesh>(&mut |_| ControlFlow::Continue(()));
+            let made = maker.make::<Mesh>((), &mut |_| ControlFlow::Continue(()));
             made.map(|(mesh, proof)| (mesh, proof.certificate))
         });
         assert!(local.as_ref().is_ok_and(|(mesh, _)| mesh.triangles.len() > 1000));

@@ -3,30 +3,46 @@
 use rustc_hash::FxHashMap;
 
 use crate::build::Builder;
+use crate::curve::Curve;
 use crate::error::{MeshError, Phase};
 use crate::grid::{Corner, Edge, Grid};
 use crate::make::Surface;
 use crate::patch::Placer;
 use crate::polygon::{self, Point};
 use crate::refine::{OnProgress, report};
-use crate::simplify::simplified;
+use crate::simplify::{DIVIDED, simplified};
 use crate::surface::Mesh;
 use crate::vector::SurfacePoint;
 
+/// What paths are made of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Lines {
+    /// Lines.
+    Alone,
+    /// Lines and circular arcs.
+    AndArcs,
+}
+
 /// Closed paths that do not cross, and walls on them.
 pub(crate) struct Outline {
-    pub(crate) paths: Vec<Vec<Point>>,
+    pub(crate) paths: Vec<Curve>,
     /// Triangles that stand on the paths. The error of a contour is proven as theirs, for a field
     /// that is the same at all heights.
     walls: Mesh,
 }
 
 impl Surface for Outline {
-    fn build(builder: &Builder<'_, '_>, progress: OnProgress<'_>) -> Result<Self, MeshError> {
+    type Style = Lines;
+
+    fn build(
+        builder: &Builder<'_, '_>,
+        style: Self::Style,
+        progress: OnProgress<'_>,
+    ) -> Result<Self, MeshError> {
         report(progress, Phase::Placing, 0, 2)?;
         let paths = linked(&builder.chords()).ok_or(MeshError::Open)?;
         report(progress, Phase::Placing, 1, 2)?;
-        let paths = simplified(paths, builder.error);
+        let paths = simplified(paths, builder.error, style == Lines::AndArcs);
         report(progress, Phase::Placing, 2, 2)?;
         let walls = walls(&paths, builder.error);
         Ok(Self { paths, walls })
@@ -34,6 +50,11 @@ impl Surface for Outline {
 
     fn triangles(&self) -> &Mesh {
         &self.walls
+    }
+
+    fn margin(&self) -> f64 {
+        let has_arcs = self.paths.iter().any(Curve::has_arcs);
+        if has_arcs { DIVIDED } else { 0.0 }
     }
 }
 
@@ -98,9 +119,10 @@ fn linked(chords: &[Chord]) -> Option<Vec<Vec<Point>>> {
 }
 
 /// Returns triangles that stand on paths, as high and deep as the error at least.
-fn walls(paths: &[Vec<Point>], error: f64) -> Mesh {
+fn walls(paths: &[Curve], error: f64) -> Mesh {
     let mut walls = Mesh::default();
-    for [from, to] in paths.iter().flat_map(|path| polygon::sides(path)) {
+    let divided = paths.iter().map(|path| path.lines(DIVIDED * error));
+    for [from, to] in divided.flat_map(|path| polygon::sides(&path).collect::<Vec<_>>()) {
         let first = walls.vertices.len() as u32;
         // Unequal heights keep the diagonal away from the middle of the side.
         for ([x, y], z) in [(from, -error), (to, -error), (to, 1.7 * error), (from, 1.7 * error)] {

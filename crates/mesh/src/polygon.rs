@@ -27,14 +27,19 @@ pub(crate) fn area(path: &[Point]) -> f64 {
 impl Rows {
     /// Sorts the sides of paths into about as many rows as the square root of their number.
     pub(crate) fn new(paths: &[Vec<Point>]) -> Self {
-        let points = || paths.iter().flatten();
+        Self::of(paths.iter().map(|path| sides(path).collect()).collect())
+    }
+
+    /// Sorts sides, which are given for each path.
+    pub(crate) fn of(paths: Vec<Vec<[Point; 2]>>) -> Self {
+        let points = || paths.iter().flatten().flatten();
         let lowest = points().map(|point| point[1]).fold(f64::INFINITY, f64::min);
         let highest = points().map(|point| point[1]).fold(f64::NEG_INFINITY, f64::max);
-        let count = (points().count() as f64).sqrt().ceil().max(1.0);
+        let count = (points().count() as f64 / 2.0).sqrt().ceil().max(1.0);
         let height = ((highest - lowest) / count).max(f64::MIN_POSITIVE);
         let mut found = Self { lowest, height, rows: vec![Vec::new(); count as usize] };
-        for (index, path) in paths.iter().enumerate() {
-            for side in sides(path) {
+        for (index, sides) in paths.into_iter().enumerate() {
+            for side in sides {
                 let [a, b] = side.map(|point| found.row(point[1]));
                 for row in a.min(b)..=a.max(b) {
                     found.rows[row].push((index, side));

@@ -1,22 +1,28 @@
-//! Leaves out points of closed paths that nearly lie on a line.
+//! Leaves out points of closed paths that nearly lie on a line or an arc.
 
+use crate::curve::{Curve, fitted};
 use crate::polygon::{Point, Rows, parents};
 
 /// A path moves by at most this fraction of the error when points are left out.
 const MOVED: f64 = 0.3;
 /// Coordinates are rounded to a power of ten that is at most this fraction of the error.
 const DIGITS: f64 = 1e-3;
+/// Lines take the place of arcs in proofs, within this fraction of the error.
+pub(crate) const DIVIDED: f64 = 0.04;
 
-/// Returns paths with fewer points and shorter numbers. They neither cross nor jump over each
-/// other: where they would, paths stay as they are.
-pub(crate) fn simplified(paths: Vec<Vec<Point>>, error: f64) -> Vec<Vec<Point>> {
-    let mut found: Vec<Vec<Point>> = paths.iter().map(|path| shorter(path, error)).collect();
+/// Returns paths with fewer points and shorter numbers, with arcs if they are wanted. They neither
+/// cross nor jump over each other: where they would, paths stay as they are.
+pub(crate) fn simplified(paths: Vec<Vec<Point>>, error: f64, has_arcs: bool) -> Vec<Curve> {
+    let mut found: Vec<Curve> = paths.iter().map(|path| shorter(path, error, has_arcs)).collect();
     let mut is_kept = vec![false; paths.len()];
     let around = parents(&paths);
     loop {
-        let mut wrong = Rows::new(&found).crossing();
+        let hulls = found.iter().map(|curve| curve.hull(DIVIDED * error)).collect();
+        let mut wrong = Rows::of(hulls).crossing();
         if wrong.is_empty() {
-            wrong = moved(&around, &parents(&found));
+            let divided: Vec<Vec<Point>> =
+                found.iter().map(|curve| curve.lines(DIVIDED * error)).collect();
+            wrong = moved(&around, &parents(&divided));
         }
         wrong.retain(|index| !is_kept[*index]);
         if wrong.is_empty() {
@@ -24,7 +30,7 @@ pub(crate) fn simplified(paths: Vec<Vec<Point>>, error: f64) -> Vec<Vec<Point>> 
         }
         for index in wrong {
             is_kept[index] = true;
-            found[index].clone_from(&paths[index]);
+            found[index] = Curve::of_lines(paths[index].clone());
         }
     }
 }
@@ -38,30 +44,37 @@ fn moved(before: &[Option<usize>], after: &[Option<usize>]) -> Vec<usize> {
         .collect()
 }
 
-fn shorter(path: &[Point], error: f64) -> Vec<Point> {
+fn shorter(path: &[Point], error: f64, has_arcs: bool) -> Curve {
+    let whole = || Curve::of_lines(path.to_vec());
     // The point that is farthest from another one is a corner wherever the path has corners.
-    let Some([x, y]) = path.first().copied() else { return Vec::new() };
+    let Some([x, y]) = path.first().copied() else { return Curve::default() };
     let away = |index: &usize| (path[*index][0] - x).hypot(path[*index][1] - y);
     let start = (0..path.len()).max_by(|a, b| away(a).total_cmp(&away(b)));
-    let Some(start) = start else { return Vec::new() };
-    let turned: Vec<Point> = [&path[start..], &path[..=start]].concat();
-    let digits = (DIGITS * error).log10().floor();
-    let scale = 10f64.powi(-digits as i32);
-    let mut short: Vec<Point> = Vec::new();
-    for point in kept(&turned, MOVED * error) {
-        let rounded = point.map(|x| (x * scale).round() / scale);
-        let rounded = if rounded.iter().all(|x| x.is_finite()) { rounded } else { point };
-        if short.last() != Some(&rounded) {
-            short.push(rounded);
-        }
+    let Some(start) = start else { return Curve::default() };
+    let mut turned: Vec<Point> = [&path[start..], &path[..=start]].concat();
+    let scale = 10f64.powi(-(DIGITS * error).log10().floor() as i32);
+    let rounded = |point: Point| point.map(|x| (x * scale).round() / scale);
+    if turned.iter().all(|point| rounded(*point).iter().all(|x| x.is_finite())) {
+        turned.iter_mut().for_each(|point| *point = rounded(*point));
+        turned.dedup();
     }
-    short.pop();
-    if short.len() < 3 { path.to_vec() } else { short }
+    if turned.len() < 4 {
+        return whole();
+    }
+    let lines = kept(&turned, MOVED * error);
+    let curve = match has_arcs {
+        true => fitted(&turned, &lines, MOVED * error),
+        false => {
+            Curve::of_lines(lines[..lines.len() - 1].iter().map(|index| turned[*index]).collect())
+        }
+    };
+    let is_area = curve.points.len() > 2 || curve.has_arcs();
+    if is_area { curve } else { whole() }
 }
 
-/// Returns the ends of a path and the points between that are needed to stay within a distance
-/// (Douglas and Peucker, 1973).
-fn kept(path: &[Point], distance: f64) -> Vec<Point> {
+/// Returns the indices of the ends of a path and of the points between that are needed to stay
+/// within a distance (Douglas and Peucker, 1973).
+fn kept(path: &[Point], distance: f64) -> Vec<usize> {
     let mut is_kept = vec![false; path.len()];
     let mut waiting = vec![[0, path.len() - 1]];
     while let Some([from, to]) = waiting.pop() {
@@ -75,7 +88,7 @@ fn kept(path: &[Point], distance: f64) -> Vec<Point> {
             waiting.extend([[from, farthest], [farthest, to]]);
         }
     }
-    path.iter().zip(is_kept).filter_map(|(point, kept)| kept.then_some(*point)).collect()
+    (0..path.len()).filter(|index| is_kept[*index]).collect()
 }
 
 /// Returns the distance of a point from a segment.
@@ -99,8 +112,10 @@ mod tests {
             square.push([f64::from(i) / 10.0, 0.0001 * f64::from(i % 2)]);
         }
         square.extend([[1.0, 0.0], [1.0, 0.5], [1.0, 1.0], [0.0, 1.0]]);
-        let found = simplified(vec![square], 0.01);
-        assert_eq!(found, [[[1.0, 1.0], [0.0, 1.0], [0.0, 0.0], [1.0, 0.0]]]);
+        let found = simplified(vec![square], 0.01, true);
+        assert_eq!(found.len(), 1);
+        assert_eq!(found[0].points, [[1.0, 1.0], [0.0, 1.0], [0.0, 0.0], [1.0, 0.0]]);
+        assert_eq!(found[0].bulges, [0.0; 4]);
     }
 
     #[test]
@@ -109,10 +124,10 @@ mod tests {
         let bulge: Vec<Point> = vec![[0.0, 0.0], [0.5, -0.02], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
         let small = vec![[0.49, -0.01], [0.49, -0.005], [0.51, -0.005], [0.51, -0.01]];
         let paths = vec![bulge.clone(), small];
-        let found = simplified(paths.clone(), 0.1);
-        assert_eq!(found[0], bulge);
-        assert!(area(&found[1]) < 0.0);
-        let alone = simplified(vec![bulge], 0.1);
-        assert_eq!(alone[0].len(), 4);
+        let found = simplified(paths.clone(), 0.1, true);
+        assert_eq!(found[0].points, bulge);
+        assert!(area(&found[1].points) < 0.0);
+        let alone = simplified(vec![bulge], 0.1, true);
+        assert_eq!(alone[0].points.len(), 4);
     }
 }

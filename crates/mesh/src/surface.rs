@@ -3,6 +3,7 @@
 use rustc_hash::FxHashMap;
 use serde::Serialize;
 
+use crate::error::shown;
 use crate::vector::{cross, dot, length, sub, total};
 
 /// A closed mesh of triangles.
@@ -73,6 +74,7 @@ impl MeshCertificate {
 impl std::fmt::Display for MeshCertificate {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let Self { error, is_proven, undecided, undecided_volume, .. } = self;
+        let error = shown(*error);
         if *is_proven {
             return write!(f, "mesh and surface are proven to be within {error} of each other");
         }

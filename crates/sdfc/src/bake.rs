@@ -45,6 +45,7 @@ impl BakeOptions {
 
 impl Scene {
     /// Samples of the field at the points of a grid, with a proven error of interpolation.
+    /// [`Self::left_out`] lists solids that it ignores.
     ///
     /// The work runs on all cores. It stops if `progress` breaks.
     ///
@@ -71,9 +72,10 @@ impl Scene {
     ) -> Result<DistanceGrid, Error> {
         self.needs_solids("a grid of samples")?;
         let frame = options.frame.clone().unwrap_or_else(|| self.defaults());
-        let options = sdfc_mesh::BakeOptions::new(self.filled_bounds(&frame)?)
+        let limited = self.limited(&frame)?;
+        let options = sdfc_mesh::BakeOptions::new(limited.bounds)
             .resolution(options.resolution)
-            .lipschitz(self.is_certified().then_some(1.0));
-        Ok(sdfc_mesh::bake(&self.program, &frame, &options, progress)?)
+            .lipschitz(limited.is_certified.then_some(1.0));
+        Ok(sdfc_mesh::bake(&limited.program, &frame, &options, progress)?)
     }
 }

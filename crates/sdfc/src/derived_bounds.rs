@@ -8,7 +8,7 @@ use sdfc_graph::{Bounds, Graph, Node, NodeId, Scene, ShapeId, bounds, reachable_
 const MOST_PARTS: usize = 1024;
 
 /// Lowest and highest corner of a box.
-type Corners = [[f64; 3]; 2];
+pub(crate) type Corners = [[f64; 3]; 2];
 
 /// Lowest and highest corner of everything that is drawn, in a graph of their own.
 #[derive(Debug)]
@@ -60,7 +60,8 @@ pub(crate) fn focus_at_one_frame(scene: &Scene, frame: &FrameValues) -> Option<C
     Some(focus.unwrap_or(whole))
 }
 
-fn corners_of(
+/// Returns the corners of a shape at a frame.
+pub(crate) fn corners_of(
     graph: &mut Graph,
     bounds: &mut Bounds,
     shape: ShapeId,

@@ -62,6 +62,8 @@ mod error;
 mod explain;
 mod explanation;
 mod field;
+#[cfg(feature = "mesh")]
+mod limited;
 mod marched;
 #[cfg(feature = "mesh")]
 mod measure;
@@ -89,6 +91,8 @@ pub use diagnostics::{DiagnosticRow, Diagnostics, EditRow, FixRow};
 pub use error::Error;
 pub use explanation::{Bounds, CallCost, Explanation, Input, QualityRow};
 pub use field::{Field, Material};
+#[cfg(feature = "mesh")]
+pub use limited::Reported;
 pub use marched::Marched;
 #[cfg(feature = "mesh")]
 pub use measure::MeasureOptions;

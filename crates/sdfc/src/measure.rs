@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 
 use sdfc_graph::eval::FrameValues;
-use sdfc_mesh::{Measurements, MeshError, Progress};
+use sdfc_mesh::{Measurements, Progress};
 
 use crate::error::Error;
 use crate::scene::Scene;
@@ -55,7 +55,8 @@ impl MeasureOptions {
 
 impl Scene {
     /// Volume, center of mass, inertia and extent of the scene, as intervals that are proven to
-    /// hold the truth, and an estimate of its area.
+    /// hold the truth, and an estimate of its area. [`Self::left_out`] lists solids that it
+    /// ignores.
     ///
     /// The work runs on all cores. It stops if `progress` breaks.
     ///
@@ -82,17 +83,10 @@ impl Scene {
     ) -> Result<Measurements, Error> {
         self.needs_solids("a measurement")?;
         let frame = options.frame.clone().unwrap_or_else(|| self.defaults());
-        let bounds = self.filled_bounds(&frame)?;
-        let options = sdfc_mesh::MeasureOptions::new(bounds)
+        let limited = self.limited(&frame)?;
+        let options = sdfc_mesh::MeasureOptions::new(limited.bounds)
             .relative(options.relative)
             .max_cells(options.max_cells);
-        Ok(sdfc_mesh::measure(&self.program, &frame, &options, progress)?)
-    }
-
-    /// Returns the bounds of a scene that can have an inside.
-    pub(crate) fn filled_bounds(&self, frame: &FrameValues) -> Result<[[f64; 3]; 2], MeshError> {
-        let bounds = self.bounds_at(frame).ok_or(MeshError::NothingDrawn)?;
-        let is_empty = (0..3).any(|axis| bounds[0][axis] > bounds[1][axis]);
-        if is_empty { Err(MeshError::Empty) } else { Ok(bounds) }
+        Ok(sdfc_mesh::measure(&limited.program, &frame, &options, progress)?)
     }
 }

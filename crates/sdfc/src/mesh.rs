@@ -5,7 +5,9 @@ use std::ops::ControlFlow;
 use sdfc_graph::eval::FrameValues;
 use sdfc_mesh::{Contour, Mesh, Plane, Progress};
 
+use crate::derived_bounds::Corners;
 use crate::error::Error;
+use crate::limited::Limited;
 use crate::scene::Scene;
 
 /// How exact a mesh or a contour is.
@@ -27,12 +29,15 @@ pub struct MeshOptions {
     pub frame: Option<FrameValues>,
     /// The most cells that are examined.
     pub max_cells: u64,
+    /// True if contours may have circular arcs; by default they are made of lines alone. Meshes
+    /// ignore it.
+    pub has_arcs: bool,
 }
 
 impl Default for MeshOptions {
     fn default() -> Self {
         let max_cells = sdfc_mesh::MeshOptions::MAX_CELLS;
-        Self { error: MeshSize::Relative(1e-3), frame: None, max_cells }
+        Self { error: MeshSize::Relative(1e-3), frame: None, max_cells, has_arcs: false }
     }
 }
 
@@ -59,10 +64,29 @@ impl MeshOptions {
     pub fn max_cells(self, max_cells: u64) -> Self {
         Self { max_cells, ..self }
     }
+
+    /// Sets whether contours may have circular arcs.
+    #[must_use]
+    pub fn has_arcs(self, has_arcs: bool) -> Self {
+        Self { has_arcs, ..self }
+    }
+
+    /// Returns the options for what has bounds.
+    fn within(&self, bounds: Corners) -> sdfc_mesh::MeshOptions {
+        let error = match self.error {
+            MeshSize::Length(length) => length,
+            MeshSize::Relative(fraction) => {
+                let side = |axis: usize| bounds[1][axis] - bounds[0][axis];
+                fraction * side(0).max(side(1)).max(side(2))
+            }
+        };
+        sdfc_mesh::MeshOptions::new(bounds, error).max_cells(self.max_cells).has_arcs(self.has_arcs)
+    }
 }
 
 impl Scene {
-    /// A closed mesh of the scene's surface, with a certificate.
+    /// A closed mesh of the scene's surface, with a certificate. [`Self::left_out`] lists solids
+    /// that it ignores.
     ///
     /// The work runs on all cores. It stops if `progress` breaks.
     ///
@@ -88,12 +112,13 @@ impl Scene {
         progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
     ) -> Result<Mesh, Error> {
         self.needs_solids("a mesh")?;
-        let (frame, options) = self.mesh_options(options)?;
-        Ok(sdfc_mesh::mesh(&self.program, &frame, &options, progress)?)
+        let frame = options.frame.clone().unwrap_or_else(|| self.defaults());
+        let Limited { program, bounds, .. } = self.limited(&frame)?;
+        Ok(sdfc_mesh::mesh(&program, &frame, &options.within(bounds), progress)?)
     }
 
     /// The closed paths around the section of the scene by a plane, with a certificate. Regions lie
-    /// in the plane z = 0.
+    /// in the plane z = 0. [`Self::left_out`] lists what is ignored.
     ///
     /// The work runs on all cores. It stops if `progress` breaks.
     ///
@@ -123,25 +148,8 @@ impl Scene {
         if self.is_planar() && Some(plane) != Plane::new([0.0, 0.0, 1.0], 0.0) {
             return Err(Error::PlaneOfRegions);
         }
-        let (frame, options) = self.mesh_options(options)?;
-        Ok(sdfc_mesh::contour(&self.program, &frame, plane, &options, progress)?)
-    }
-
-    /// Returns the frame of options, and options with the scene's bounds.
-    fn mesh_options(
-        &self,
-        options: &MeshOptions,
-    ) -> Result<(FrameValues, sdfc_mesh::MeshOptions), Error> {
         let frame = options.frame.clone().unwrap_or_else(|| self.defaults());
-        let bounds = self.filled_bounds(&frame)?;
-        let error = match options.error {
-            MeshSize::Length(length) => length,
-            MeshSize::Relative(fraction) => {
-                let side = |axis: usize| bounds[1][axis] - bounds[0][axis];
-                fraction * side(0).max(side(1)).max(side(2))
-            }
-        };
-        let options = sdfc_mesh::MeshOptions::new(bounds, error).max_cells(options.max_cells);
-        Ok((frame, options))
+        let Limited { program, bounds, .. } = self.limited(&frame)?;
+        Ok(sdfc_mesh::contour(&program, &frame, plane, &options.within(bounds), progress)?)
     }
 }

@@ -7,7 +7,7 @@ use std::f64::consts::PI;
 use std::ops::ControlFlow;
 
 use robust::{Coord, orient2d};
-use sdfc::{Compiler, Contour, Error, MeshError, MeshOptions, MeshSize, Plane, Scene};
+use sdfc::{Compiler, Contour, ContourPath, Error, MeshError, MeshOptions, MeshSize, Plane, Scene};
 
 type Point = [f64; 2];
 
@@ -16,7 +16,17 @@ fn scene(source: &str) -> Scene {
 }
 
 fn contour(source: &str, normal: [f64; 3], offset: f64, relative: f64) -> Result<Contour, Error> {
-    let options = MeshOptions::new().error(MeshSize::Relative(relative));
+    contour_of(source, normal, offset, relative, false)
+}
+
+fn contour_of(
+    source: &str,
+    normal: [f64; 3],
+    offset: f64,
+    relative: f64,
+    has_arcs: bool,
+) -> Result<Contour, Error> {
+    let options = MeshOptions::new().error(MeshSize::Relative(relative)).has_arcs(has_arcs);
     let plane = Plane::new(normal, offset).unwrap();
     scene(source).contour(plane, &options, &mut |_| ControlFlow::Continue(()))
 }
@@ -48,9 +58,32 @@ fn is_within([x, y]: Point, path: &[Point]) -> bool {
     sides(path).filter(crosses).count() % 2 == 1
 }
 
+/// Returns points of a path, with 16 on each arc: on a circle about the center of the arc.
+fn divided(path: &ContourPath) -> Vec<Point> {
+    let mut found = Vec::new();
+    for ([a, b], bulge) in sides(&path.points).zip(&path.bulges) {
+        if *bulge == 0.0 {
+            found.push(a);
+            continue;
+        }
+        let above = (bulge.recip() - bulge) / 4.0;
+        let center = [
+            0.5 * (a[0] + b[0]) - above * (b[1] - a[1]),
+            0.5 * (a[1] + b[1]) + above * (b[0] - a[0]),
+        ];
+        for index in 0..16 {
+            let (sine, cosine) = (bulge.atan() * 4.0 * f64::from(index) / 16.0).sin_cos();
+            let [x, y] = [a[0] - center[0], a[1] - center[1]];
+            found.push([center[0] + cosine * x - sine * y, center[1] + sine * x + cosine * y]);
+        }
+    }
+    found
+}
+
 /// Checks what holds for every contour, by brute force.
 fn check(contour: &Contour, name: &str) {
-    let paths: Vec<&[Point]> = contour.paths.iter().map(|path| &path.points[..]).collect();
+    let paths: Vec<Vec<Point>> = contour.paths.iter().map(divided).collect();
+    let paths: Vec<&[Point]> = paths.iter().map(|path| &path[..]).collect();
     let all: Vec<[Point; 2]> = paths.iter().flat_map(|path| sides(path)).collect();
     for (index, side) in all.iter().enumerate() {
         let crossed = all[..index].iter().find(|other| meet(*side, **other));
@@ -66,7 +99,7 @@ fn check(contour: &Contour, name: &str) {
         });
         assert_eq!(path.parent, parent, "{name}: path {index}");
         assert_eq!(path.is_hole, around.len() % 2 == 1, "{name}: path {index}");
-        let area: f64 = sides(&path.points).map(|[a, b]| a[0] * b[1] - a[1] * b[0]).sum();
+        let area: f64 = sides(paths[index]).map(|[a, b]| a[0] * b[1] - a[1] * b[0]).sum();
         assert_eq!(path.is_hole, area < 0.0, "{name}: path {index} has the wrong orientation");
     }
 }
@@ -94,12 +127,35 @@ const CASES: &[(&str, [f64; 3], f64, usize, bool)] = &[
 #[test]
 fn hard_sections_give_valid_contours() {
     for (source, normal, offset, paths, is_proven) in CASES {
-        let contour = contour(source, *normal, *offset, 0.005).unwrap();
-        check(&contour, source);
-        assert_eq!(contour.paths.len(), *paths, "{source}");
-        let certificate = &contour.certificate;
-        assert!(certificate.is_proven || !is_proven, "{source}: {certificate:?}");
+        for has_arcs in [false, true] {
+            let contour = contour_of(source, *normal, *offset, 0.005, has_arcs).unwrap();
+            check(&contour, source);
+            assert_eq!(contour.paths.len(), *paths, "{source}");
+            let certificate = &contour.certificate;
+            assert!(certificate.is_proven || !is_proven, "{source}: {certificate:?}");
+        }
     }
+}
+
+#[test]
+fn arcs_are_within_the_error_of_a_section_of_lines_and_circles() {
+    let source = "box([1.6, 0.6, 0.6]).round(0.2) - cylinder(r: 0.25, h: 3).rotate(x: 90deg)";
+    let contour = contour_of(source, [0.0, 0.0, 1.0], 0.0, 0.001, true).unwrap();
+    let certificate = &contour.certificate;
+    assert!(certificate.is_proven, "{certificate:?}");
+    let points: usize = contour.paths.iter().map(|path| path.points.len()).sum();
+    assert!(points <= 20, "{points} points: {contour:?}");
+    let scene = scene(source);
+    let mut field = scene.field(&scene.defaults()).unwrap();
+    let mut farthest: f64 = 0.0;
+    for [x, y] in contour.paths.iter().flat_map(divided) {
+        farthest = farthest.max(field.distance([x, y, 0.0]).abs());
+    }
+    let error = certificate.error;
+    assert!(farthest <= error && farthest > 0.01 * error, "{farthest} of {error}");
+    // A rectangle with round corners and a round hole.
+    let exact = 2.0 - (4.0 - PI) * 0.04 - PI * 0.0625;
+    assert!((contour.area() - exact).abs() < 8.0 * error, "{} of {exact}", contour.area());
 }
 
 #[test]

@@ -351,6 +351,9 @@ class Meshes(unittest.TestCase):
         self.assertEqual((outer.is_hole, hole.is_hole), (False, True))
         np.testing.assert_allclose(np.linalg.norm(hole.points, axis=1), 0.5, atol=1e-3)
         self.assertAlmostEqual(contour.area, math.pi * 0.75, delta=0.01)
+        self.assertFalse(outer.bulges.any())
+        arcs = sdfc.compile("sphere(1)").contour(error=1e-3, arcs=True).paths[0]
+        self.assertTrue((arcs.bulges > 0.3).all() and len(arcs.points) < 8)
         with tempfile.TemporaryDirectory() as folder:
             contour.save(Path(folder) / "a.svg")
             self.assertIn("<svg", (Path(folder) / "a.svg").read_text())

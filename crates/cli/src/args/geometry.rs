@@ -39,6 +39,9 @@ pub struct Contour {
     /// 1,1,0=2
     #[arg(long, value_name = "AXIS=LENGTH", default_value = "z=0", value_parser = plane)]
     pub plane: Plane,
+    /// Write lines alone, without circular arcs
+    #[arg(long)]
+    pub lines: bool,
     /// The error limit.
     #[command(flatten)]
     pub exactness: Exactness,

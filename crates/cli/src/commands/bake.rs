@@ -22,9 +22,11 @@ pub fn run(args: &args::Bake, console: &Console) -> Result<(), Failure> {
     let format = GridFormat::of(&output.path).map_err(Failure::Call)?;
     let scene = super::scene_with(&args.file, super::compiler(), &args.values.params.set, console)?;
     let frame = super::values(&scene, args.values.time);
-    let options = BakeOptions::new().resolution(args.resolution).frame(frame);
+    let options = BakeOptions::new().resolution(args.resolution).frame(frame.clone());
     let grid = super::mesh_work("baking", console, |progress| scene.bake(&options, progress))?;
-    output.write(&format.encode(&grid), &grid)?;
+    let reported = scene.reported(&frame, &grid);
+    super::note_left_out(&reported.left_out, console);
+    output.write(&format.encode(&grid), &reported)?;
     print(&output.path, &grid, console);
     Ok(())
 }

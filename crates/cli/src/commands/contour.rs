@@ -22,20 +22,28 @@ pub fn run(args: &args::Contour, console: &Console) -> Result<(), Failure> {
     let format = ContourFormat::of(&output.path).map_err(Failure::Call)?;
     let scene = super::scene_with(&args.file, super::compiler(), &args.values.params.set, console)?;
     let options = super::mesh_options(&scene, &args.exactness, args.values.time);
+    let options = options.has_arcs(!args.lines);
     let contour = super::mesh_work("tracing", console, |progress| {
         scene.contour(args.plane, &options, progress)
     })?;
-    output.write(&format.encode(&contour), &contour.report(&args.plane))?;
+    let reported =
+        scene.reported(&super::values(&scene, args.values.time), contour.report(&args.plane));
+    super::note_left_out(&reported.left_out, console);
+    output.write(&format.encode(&contour), &reported)?;
     print(&output.path, &contour, console);
     Ok(())
 }
 
 fn print(path: &Path, contour: &Contour, console: &Console) {
     let Contour { paths, certificate, .. } = contour;
-    let corners: usize = paths.iter().map(|path| path.points.len()).sum();
+    let bulges = || paths.iter().flat_map(|path| &path.bulges);
+    let arcs = bulges().filter(|bulge| **bulge != 0.0).count();
+    let lines = bulges().count() - arcs;
     let (name, count) = (path.display(), paths.len());
     let plural = if count == 1 { "" } else { "s" };
-    console.note(&format!("{name}: {count} path{plural} with {corners} corners; {certificate}"));
+    console.note(&format!(
+        "{name}: {count} path{plural} of {lines} lines and {arcs} arcs; {certificate}"
+    ));
     if let Some([lo, hi]) = certificate.undecided_boxes.first() {
         console.note(&format!("the first undecided box is from {lo:?} to {hi:?}"));
     }

@@ -3,7 +3,6 @@
 use std::fmt::Write;
 
 use sdfc::{Clearance, MeasureOptions, Measurements, Proven};
-use serde::Serialize;
 
 use crate::args;
 use crate::console::Console;
@@ -19,20 +18,30 @@ use crate::output;
 pub fn run(args: &args::Measure, console: &Console) -> Result<(), Failure> {
     let scene = super::scene_with(&args.file, super::compiler(), &args.values.params.set, console)?;
     let frame = super::values(&scene, args.values.time);
-    let options = MeasureOptions::new().relative(args.error_relative).frame(frame);
+    let options = MeasureOptions::new().relative(args.error_relative).frame(frame.clone());
     let options = args.max_cells.map_or(options.clone(), |limit| options.max_cells(limit));
     let (text, is_limited) = match &args.between[..] {
         [first, second] => {
             let found = super::mesh_work("measuring", console, |progress| {
                 scene.clearance([first, second], &options, progress)
             })?;
-            (text(args, &found, clearance_table)?, found.is_limited)
+            let text = match args.json {
+                true => output::json(&found)?,
+                false => clearance_table(&found).into_bytes(),
+            };
+            (text, found.is_limited)
         }
         _ => {
             let found = super::mesh_work("measuring", console, |progress| {
                 scene.measure(&options, progress)
             })?;
-            (text(args, &found, table)?, found.is_limited)
+            let reported = scene.reported(&frame, &found);
+            super::note_left_out(&reported.left_out, console);
+            let text = match args.json {
+                true => output::json(&reported)?,
+                false => table(&found).into_bytes(),
+            };
+            (text, found.is_limited)
         }
     };
     if is_limited {
@@ -42,14 +51,6 @@ pub fn run(args: &args::Measure, console: &Console) -> Result<(), Failure> {
         ));
     }
     output::to_stdout(&text)
-}
-
-fn text<T: Serialize>(
-    args: &args::Measure,
-    found: &T,
-    table: impl Fn(&T) -> String,
-) -> Result<Vec<u8>, Failure> {
-    if args.json { output::json(found) } else { Ok(table(found).into_bytes()) }
 }
 
 fn clearance_table(found: &Clearance) -> String {

@@ -24,7 +24,9 @@ pub fn run(args: &args::Mesh, console: &Console) -> Result<(), Failure> {
     let options = super::mesh_options(&scene, &args.exactness, args.values.time);
     let mesh = super::mesh_work("meshing", console, |progress| scene.mesh(&options, progress))?;
     let bytes = format.encode(&mesh).map_err(|error| Failure::Call(error.to_string()))?;
-    output.write(&bytes, &mesh.report())?;
+    let reported = scene.reported(&super::values(&scene, args.values.time), mesh.report());
+    super::note_left_out(&reported.left_out, console);
+    output.write(&bytes, &reported)?;
     print(&output.path, &mesh, console);
     Ok(())
 }

@@ -102,6 +102,14 @@ fn values(scene: &Scene, time: f64) -> FrameValues {
     FrameValues { time, ..scene.defaults() }
 }
 
+/// Says which solids or regions a mesh, a contour, measurements or a grid leave out.
+fn note_left_out(left_out: &[String], console: &Console) {
+    if !left_out.is_empty() {
+        let listed = left_out.join(", ");
+        console.note(&format!("not included, because it has no limit: {listed}"));
+    }
+}
+
 /// Returns the options of a mesh or a contour.
 fn mesh_options(scene: &Scene, exactness: &Exactness, time: f64) -> MeshOptions {
     let options = MeshOptions::new().frame(values(scene, time));

@@ -69,15 +69,39 @@ fn svg(contour: &Contour) -> String {
     for (outer, holes) in contour.paths.iter().zip(holes).filter(|(path, _)| !path.is_hole) {
         text += "<path d=\"";
         for path in std::iter::once(outer).chain(holes) {
-            for (index, [x, y]) in path.points.iter().enumerate() {
-                let _ = write!(text, "{}{x} {}", if index == 0 { "M" } else { " " }, 0.0 - y);
-            }
-            text += "Z";
+            svg_path(&mut text, path);
         }
         text += "\"/>\n";
     }
     text += "</g>\n</svg>\n";
     text
+}
+
+fn svg_path(text: &mut String, path: &ContourPath) {
+    let mut command = "M";
+    for (segment, is_last) in path.segments().zip((1..=path.points.len()).rev().map(|n| n == 1)) {
+        let [[x, y], [to_x, to_y]] = segment.ends;
+        if command == "M" {
+            let _ = write!(text, "M{x} {}", 0.0 - y);
+        }
+        let next = if segment.bulge == 0.0 { "L" } else { "A" };
+        if segment.bulge != 0.0 {
+            let radius = short(segment.radius());
+            // Clockwise in a plane whose second coordinate points down.
+            let sweep = u8::from(segment.bulge < 0.0);
+            let _ = write!(text, "A{radius} {radius} 0 0 {sweep} {to_x} {}", 0.0 - to_y);
+        } else if !is_last {
+            let separator = if command == "A" { "L" } else { " " };
+            let _ = write!(text, "{separator}{to_x} {}", 0.0 - to_y);
+        }
+        command = next;
+    }
+    text.push('Z');
+}
+
+/// Returns a number with 12 digits, so few that its rounding is far below any error.
+fn short(value: f64) -> f64 {
+    format!("{value:.11e}").parse().unwrap_or(value)
 }
 
 /// DXF, as pairs of a group code and a value:
@@ -92,8 +116,11 @@ fn dxf(contour: &Contour) -> String {
     );
     for path in &contour.paths {
         text += "0\nPOLYLINE\n8\n0\n66\n1\n10\n0\n20\n0\n30\n0\n70\n1\n";
-        for [x, y] in &path.points {
+        for ([x, y], bulge) in path.points.iter().zip(&path.bulges) {
             let _ = write!(text, "0\nVERTEX\n8\n0\n10\n{x}\n20\n{y}\n30\n0\n");
+            if *bulge != 0.0 {
+                let _ = write!(text, "42\n{bulge}\n");
+            }
         }
         text += "0\nSEQEND\n8\n0\n";
     }

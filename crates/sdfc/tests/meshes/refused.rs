@@ -24,6 +24,23 @@ fn an_empty_scene_is_refused() {
     let source = "box([1, 0.8, 0.9]) & sphere(0.5).translate(x: 3)";
     let error = refusal(source, &MeshOptions::new());
     assert_eq!(error, MeshError::Empty);
+    let options = MeshOptions::new().error(MeshSize::Length(0.1));
+    assert_eq!(refusal("sphere(0)", &options), MeshError::Empty);
+    let unseen = refusal("sphere(0.001)\nsphere(0.001).translate(x: 2)", &options);
+    assert_eq!(unseen, MeshError::NothingFound { error: 0.1 });
+}
+
+#[test]
+fn solids_without_limits_beside_others_are_left_out() {
+    let alone = "sphere(1).color(#ff0000)";
+    let beside =
+        format!("let floor = plane(y: -1).color(#00ff00)\nfloor\n{alone}\nfloor - sphere(2)");
+    let [alone, beside] = [alone, &beside].map(scene);
+    assert_eq!(alone.left_out(&alone.defaults()), [""; 0]);
+    let left_out = beside.left_out(&beside.defaults());
+    assert_eq!(left_out, ["`floor` (line 1)", "`floor - sphere(2)` (line 4)"]);
+    let [alone, beside] = [alone, beside].map(|scene| mesh(&scene, 0.02));
+    assert_eq!(alone, beside);
 }
 
 #[test]

@@ -102,6 +102,9 @@ class ContourPath:
     points: NDArray[np.float64]
     """The corners in the coordinates of the plane, of shape (n, 2), in scene units. The last one is
     connected to the first one."""
+    bulges: NDArray[np.float64]
+    """The bulge of the line or arc from each corner to the next one, of shape (n,): 0 for a line,
+    else the tangent of a quarter of the arc's angle, positive if it is counter-clockwise."""
     is_hole: bool
     """True if the inside of the scene is outside of the path; holes are clockwise."""
     parent: int | None
@@ -130,7 +133,12 @@ class Contour:
         self._handle = handle
         described = json.loads(lib.sdfc_contour_describe(handle.address))
         self.paths = [
-            ContourPath(np.array(path["points"]), path["is_hole"], path["parent"])
+            ContourPath(
+                np.array(path["points"]),
+                np.array(path["bulges"]),
+                path["is_hole"],
+                path["parent"],
+            )
             for path in described["paths"]
         ]
         self.origin, self.axes = np.array(described["origin"]), np.array(described["axes"])

@@ -325,12 +325,14 @@ class Scene:
         error: float | None = None,
         relative: float | None = None,
         max_cells: int | None = None,
+        arcs: bool = False,
         progress: Progress | None = None,
     ) -> Contour:
         """Makes the closed paths around the section by a plane, on all cores.
 
         The plane has the ``normal``, of any length, and the coordinate ``offset`` along it, in
         scene units. ``error``, ``relative`` and ``max_cells`` are those of :meth:`mesh`.
+        With ``arcs``, paths have circular arcs where these need fewer points.
 
         Raises :class:`ArgumentError` if the plane meets no inside of the scene.
         """
@@ -340,6 +342,7 @@ class Scene:
             error=error,
             error_relative=relative,
             max_cells=max_cells,
+            arcs=arcs,
         )
         call, free = lib.sdfc_contour_make, lib.sdfc_contour_free
         return Contour(_native.run(call, free, self._handle, stated, progress))
