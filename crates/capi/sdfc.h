@@ -316,8 +316,8 @@ const uint32_t *sdfc_mesh_triangles(const sdfc_mesh *mesh, size_t *count);
 
 /*
  Returns what is known about the mesh as JSON, as `sdfc mesh --json` writes it: the numbers of
- its vertices and triangles, its volume, area and bounds, and the certificate. Returns null for
- null.
+ its vertices and triangles, its volume, area and bounds, its connected parts, and the
+ certificate. Returns null for null.
 
  # Safety
 

@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use crate::contour::Contour;
 use crate::plane::Plane;
+use crate::shell::Shell;
 use crate::surface::{Mesh, MeshCertificate};
 
 /// A report about a mesh. [`Mesh::report`] makes it. Lengths are in scene units.
@@ -22,6 +23,8 @@ pub struct MeshReport<'a> {
     pub area: f64,
     /// The lowest and the highest corner; `None` without vertices.
     pub bounds: Option<[[f64; 3]; 2]>,
+    /// The connected parts; see [`Mesh::shells`].
+    pub shells: Vec<Shell>,
     /// The proven properties.
     pub certificate: &'a MeshCertificate,
 }
@@ -55,6 +58,7 @@ impl Mesh {
             volume: self.volume(),
             area: self.area(),
             bounds: self.bounds(),
+            shells: self.shells(),
             certificate: &self.certificate,
         }
     }

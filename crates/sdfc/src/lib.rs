@@ -125,7 +125,7 @@ pub use sdfc_march::{Method, UnknownMethod};
 pub use sdfc_mesh::{
     Clearance, Contour, ContourCertificate, ContourFormat, ContourPath, ContourReport,
     DistanceGrid, EncodeError, GridFormat, Measurements, Mesh, MeshCertificate, MeshError,
-    MeshFormat, MeshReport, Phase as MeshPhase, Plane, Progress as MeshProgress, Proven,
+    MeshFormat, MeshReport, Phase as MeshPhase, Plane, Progress as MeshProgress, Proven, Shell,
 };
 #[cfg(feature = "render")]
 pub use sdfc_render::{Animation, Image, Progress, RasterKind, Stats, Tile, no_progress};

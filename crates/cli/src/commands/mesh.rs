@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use sdfc::{Mesh, MeshFormat};
+use sdfc::{Mesh, MeshFormat, Shell};
 
 use crate::args;
 use crate::console::Console;
@@ -34,8 +34,29 @@ pub fn run(args: &args::Mesh, console: &Console) -> Result<(), Failure> {
 fn print(path: &Path, mesh: &Mesh, console: &Console) {
     let certificate = &mesh.certificate;
     let (name, triangles) = (path.display(), mesh.triangles.len());
-    console.note(&format!("{name}: {triangles} triangles; {certificate}"));
+    let parts = parts(&mesh.shells());
+    console.note(&format!("{name}: {triangles} triangles in {parts}; {certificate}"));
     if let Some([lo, hi]) = certificate.undecided_boxes.first() {
         console.note(&format!("the first undecided box is from {lo:?} to {hi:?}"));
     }
+}
+
+/// Returns the numbers of parts, cavities and holes, such as `1 part with 2 holes`.
+fn parts(shells: &[Shell]) -> String {
+    let counted = |count: usize, one: &str, many: &str| match count {
+        1 => format!("1 {one}"),
+        _ => format!("{count} {many}"),
+    };
+    let cavities = shells.iter().filter(|shell| shell.is_cavity).count();
+    let holes: usize = shells.iter().filter_map(|shell| shell.holes).sum();
+    let mut text = counted(shells.len() - cavities, "part", "parts");
+    let mut join = " with ";
+    for (count, one, many) in [(cavities, "cavity", "cavities"), (holes, "hole", "holes")] {
+        if count > 0 {
+            text += join;
+            text += &counted(count, one, many);
+            join = " and ";
+        }
+    }
+    text
 }

@@ -41,6 +41,18 @@ fn hard_scenes_give_valid_meshes() {
     }
 }
 
+#[test]
+fn parts_cavities_and_holes_are_counted() {
+    let source = "torus(1, 0.3)\n(sphere(1) - sphere(0.9)).translate(x: 4)\n\
+        (box(1) - cylinder(r: 0.2, h: 2) - cylinder(r: 0.2, h: 2).rotate(x: 90deg)).translate(y: 4)";
+    let mesh = mesh(&scene(source), 0.003);
+    let shells = mesh.shells();
+    let found: Vec<_> = shells.iter().map(|shell| (shell.holes, shell.is_cavity)).collect();
+    // Two holes that cross, so that one solid is between their four ends.
+    let expected = [(0, false), (0, true), (1, false), (3, false)];
+    assert_eq!(found, expected.map(|(holes, is_cavity)| (Some(holes), is_cavity)));
+}
+
 /// True if no point of a grid is inside.
 fn is_empty(scene: &Scene) -> bool {
     let mut field = scene.field(&scene.defaults()).unwrap();

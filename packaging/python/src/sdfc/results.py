@@ -57,6 +57,9 @@ class Mesh:
     """The area of all triangles, in square scene units."""
     bounds: NDArray[np.float64] | None
     """The lowest and the highest corner, of shape (2, 3); None without vertices."""
+    shells: list[dict[str, Any]]
+    """The connected parts and cavities: ``volume``, ``holes``, ``is_cavity``, ``bounds`` and more,
+    as ``sdfc mesh --json`` writes them."""
     certificate: dict[str, Any]
     """The proven properties: ``error``, ``is_proven``, ``is_topology_proven``, ``undecided`` and
     more, as ``sdfc mesh --json`` writes them."""
@@ -77,6 +80,7 @@ class Mesh:
         described = json.loads(lib.sdfc_mesh_describe(handle.address))
         self.volume, self.area = described["volume"], described["area"]
         self.bounds = _corners(described["bounds"])
+        self.shells = described["shells"]
         self.certificate = described["certificate"]
 
     def save(self, path: PathLike) -> None:
