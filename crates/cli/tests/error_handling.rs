@@ -1,5 +1,6 @@
 //! Bad input and failures of the machine give a clear error, the right exit status, no panic and no
-//! partial output. `device.rs` tests lost devices, and `fault_injection.rs` faults of disk and memory.
+//! partial output. `device.rs` tests lost devices, and `fault_injection.rs` faults of disk and
+//! memory.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 

@@ -112,8 +112,8 @@ pub enum RenderError {
 }
 
 impl RenderError {
-    /// Returns true if the device failed in the middle of its work, as after a tile that took longer
-    /// than the system allows. Another device may do the work in smaller tiles.
+    /// Returns true if the device failed in the middle of its work, as after a tile that took
+    /// longer than the system allows. Another device may do the work in smaller tiles.
     pub fn is_device_failure(&self) -> bool {
         matches!(self, Self::DeviceLost(_) | Self::Stalled(_))
     }

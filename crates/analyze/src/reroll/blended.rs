@@ -129,8 +129,8 @@ impl MaterialLoop {
     }
 }
 
-/// True if some values depend on the normal or on the direction to the eye. These are replaced in the
-/// flat program, but not in loops.
+/// True if some values depend on the normal or on the direction to the eye. These are replaced in
+/// the flat program, but not in loops.
 fn depends_on_surface(graph: &mut Graph, values: &[NodeId]) -> bool {
     let vectors = SurfaceVector::ALL.map(|vector| graph.surface_vector(vector));
     let used = reachable(graph, values);

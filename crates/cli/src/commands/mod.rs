@@ -175,8 +175,8 @@ fn shown(compiled: Result<Scene, Diagnostics>, console: &Console) -> Result<Scen
     }
 }
 
-/// Converts an error that occurred after the scene compiled. A command that Ctrl-C stopped says more
-/// by [`Interrupt::explained`].
+/// Converts an error that occurred after the scene compiled. A command that Ctrl-C stopped says
+/// more by [`Interrupt::explained`].
 fn lowering(error: &Error, console: &Console) -> Failure {
     let message = error.to_string();
     if error.is_machine() {

@@ -126,8 +126,8 @@ fn use_everywhere() {
 }
 
 // The distance up to which a sample outside the box of cells must be exact. A ray that leads away
-// from the box never meets it again, and a clearance of twice the least one so far, or of twice that
-// of full light, has no effect.
+// from the box never meets it again, and a clearance of twice the least one so far, or of twice
+// that of full light, has no effect.
 fn exact_distance_outside(p: vec3f) -> f32 {
     if SOFT_SHADOWS {
         if records_clearance {

@@ -50,8 +50,8 @@ fn group_words(loop_index: u32, group: u32) -> u32 {
 }
 
 // One invocation for each group (x), 32 iterations (y) and loop (z). It runs at level 0 to find the
-// least operand of each group, then at level 1 to find the iterations that can matter there. Drivers
-// inline `culling_bounds` wherever it is called, so each stage calls it at one place.
+// least operand of each group, then at level 1 to find the iterations that can matter there.
+// Drivers inline `culling_bounds` wherever it is called, so each stage calls it at one place.
 @compute @workgroup_size(64)
 fn mark_groups(@builtin(global_invocation_id) id: vec3u) {
     let count_all = active_lists[ALL_ITERATIONS + 2u * id.z];

@@ -63,8 +63,8 @@ impl WindowEvents {
     }
 
     /// The device that shows the window, if the scene is drawn on it: if it is that of a GPU. With
-    /// a software driver, the copy of a picture costs little, and with a separate device, the frames
-    /// of the window do not wait for the rays.
+    /// a software driver, the copy of a picture costs little, and with a separate device, the
+    /// frames of the window do not wait for the rays.
     pub fn drawing_device(&self) -> Option<(&RenderState, WindowDevice)> {
         let state = self.state()?;
         let info = state.adapter.get_info();
