@@ -1,5 +1,8 @@
 //! A scene that was parsed and checked, with the positions of all its names.
 
+use std::sync::OnceLock;
+
+use rustc_hash::FxHashMap;
 use sdfc_diagnostics::{Diagnostic, FileId, Sources, Span};
 use sdfc_lang::Resolver;
 use sdfc_lang::hir::Program;
@@ -51,8 +54,10 @@ pub struct Analysis {
     pub(crate) imports: Vec<Imported>,
     pub(crate) uses: Uses,
     pub(crate) found: Vec<Diagnostic>,
-    /// The names of the scene and its imports, by position. Empty for a text with a cursor.
-    pub(crate) occurrences: Vec<Occurrence>,
+    /// See [`Analysis::index_declarations`].
+    declared: OnceLock<FxHashMap<Span, usize>>,
+    /// See [`Analysis::occurrences`].
+    occurrences: OnceLock<Vec<Occurrence>>,
 }
 
 impl Analysis {
@@ -62,9 +67,7 @@ impl Analysis {
         let mut sources = Sources::new();
         let file = sources.add(name, text);
         let inspection = inspect(&mut sources, file, resolver);
-        let mut analysis = Self::of(sources, (file, resolver.scene_path()), inspection);
-        analysis.occurrences = analysis.find_occurrences();
-        analysis
+        Self::of(sources, (file, resolver.scene_path()), inspection)
     }
 
     /// Parses and checks a scene in which the name `cursor` marks the position of the cursor.
@@ -77,8 +80,20 @@ impl Analysis {
 
     fn of(sources: Sources, (file, path): (FileId, &str), inspection: Inspection) -> Self {
         let Inspection { program, tree, imports, uses, diagnostics: found } = inspection;
-        let (scene_path, occurrences) = (path.to_owned(), Vec::new());
-        Self { sources, file, scene_path, program, tree, imports, uses, found, occurrences }
+        let (scene_path, declared, occurrences) =
+            (path.to_owned(), OnceLock::new(), OnceLock::new());
+        Self {
+            sources,
+            file,
+            scene_path,
+            program,
+            tree,
+            imports,
+            uses,
+            found,
+            declared,
+            occurrences,
+        }
     }
 
     /// The text of the scene.
@@ -124,7 +139,7 @@ impl Analysis {
 
     /// The name at a byte offset of the scene. A cursor behind the last letter counts.
     pub(crate) fn occurrence(&self, offset: usize) -> Option<&Occurrence> {
-        let of_scene = self.occurrences.iter().filter(|it| it.span.file == self.file);
+        let of_scene = self.occurrences().iter().filter(|it| it.span.file == self.file);
         let holds =
             |it: &&Occurrence| it.span.start as usize <= offset && offset <= it.span.end as usize;
         of_scene.filter(holds).max_by_key(|it| it.span.start)
@@ -137,9 +152,22 @@ impl Analysis {
 
     /// The declaration in a file or in the library whose name has this span.
     pub(crate) fn declaration(&self, name: Span) -> Option<&ast::Decl> {
-        let items = self.tree_of(name.file)?.items.iter();
-        let mut own = items.filter_map(Item::as_decl);
-        own.find(|decl| decl.name.span == name).or_else(|| library().declaration(name))
+        library().declaration(name).or_else(|| {
+            let at = self.declared.get_or_init(|| self.index_declarations()).get(&name)?;
+            self.tree_of(name.file)?.items.get(*at)?.as_decl()
+        })
+    }
+
+    /// The index of each declaration among the items of its file, by the span of its name.
+    fn index_declarations(&self) -> FxHashMap<Span, usize> {
+        let items = self.trees().flat_map(|tree| tree.items.iter().enumerate());
+        items.filter_map(|(at, item)| Some((item.as_decl()?.name.span, at))).collect()
+    }
+
+    /// The names of the scene and its imports, by position. They are found when they are first
+    /// asked for: diagnostics and completion do without.
+    pub(crate) fn occurrences(&self) -> &[Occurrence] {
+        self.occurrences.get_or_init(|| self.find_occurrences())
     }
 
     fn find_occurrences(&self) -> Vec<Occurrence> {

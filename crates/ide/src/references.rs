@@ -34,7 +34,7 @@ pub fn occurrences<'a>(
     wanted: &'a Subject,
 ) -> impl Iterator<Item = &'a Occurrence> {
     analysis
-        .occurrences
+        .occurrences()
         .iter()
         .filter(move |it| is_name(analysis.slice(it.span)) && subject(analysis, it) == *wanted)
 }

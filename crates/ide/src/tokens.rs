@@ -105,7 +105,7 @@ impl Names {
     fn new(analysis: &Analysis) -> Self {
         let mut roles = FxHashMap::default();
         let mut by_start = FxHashMap::default();
-        for it in analysis.occurrences.iter().filter(|it| it.span.file == analysis.file) {
+        for it in analysis.occurrences().iter().filter(|it| it.span.file == analysis.file) {
             let role = match &it.referent {
                 Referent::Declared(name) => {
                     let role = *roles.entry(*name).or_insert_with(|| role_of(analysis, *name));

@@ -53,8 +53,10 @@ fn inspect_with(
     sources: &mut Sources,
     file: FileId,
     resolver: &dyn Resolver,
-    uses: Uses,
+    mut uses: Uses,
 ) -> Inspection {
+    // About as many expressions as a scene has. A table that grows moves its entries.
+    uses.types.reserve(sources.text(file).len() / 8);
     let checked = check_scene(sources, file, resolver, None, Some(uses));
     Inspection {
         program: checked.program,

@@ -186,7 +186,7 @@ fn statement(node: Node<'_>, child: Option<&Node<'_>>) -> Option<(Span, bool)> {
 
 /// True if all names of an expression are known before the statement around it.
 fn knows(analysis: &Analysis, (statement, is_item): (Span, bool), e: Span) -> bool {
-    let mut names = analysis.occurrences.iter().filter(|it| e.contains(it.span));
+    let mut names = analysis.occurrences().iter().filter(|it| e.contains(it.span));
     names.all(|it| match &it.referent {
         Referent::Declared(name) => !statement.contains(*name) || e.contains(*name),
         Referent::Implicit => !is_item,

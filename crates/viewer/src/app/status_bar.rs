@@ -118,7 +118,8 @@ fn metrics(ui: &mut Ui, picture: &Picture, moving: Option<&MovingPicture>) {
 /// refining.
 fn refinement(ui: &mut Ui, session: &mut Session) {
     let Some(picture) = session.picture.as_deref() else { return };
-    if !session.refine || !picture.finished && !picture.request.moving {
+    let moves = session.moving.is_some() || picture.request.moving;
+    if !session.refine || !picture.finished && !moves {
         let (text, help) = match session.refine {
             true => ("Pause", "Stop refining the picture (R)."),
             false => ("Resume", "Refine the picture to full resolution (R)."),
@@ -127,26 +128,38 @@ fn refinement(ui: &mut Ui, session: &mut Session) {
             session.refine = !session.refine;
         }
     }
-    let text = if picture.stride > 1 {
+    let Some(text) = resolution(session) else { return };
+    let help = "A slow scene is drawn at a lower resolution while something moves, and refined \
+                when it rests. R pauses and resumes refining.";
+    ui.label(RichText::new(text).small().color(theme::of(ui).accent)).on_hover_text(help);
+}
+
+/// The resolution or the samples of the shown picture, if it is not finished.
+fn resolution(session: &Session) -> Option<String> {
+    if let Some(moving) = &session.moving {
+        return (moving.divisor > 1).then(|| reduced(moving.divisor, moving.milliseconds));
+    }
+    let picture = session.picture.as_deref()?;
+    if picture.stride > 1 {
         let scale = picture.divisor * picture.stride;
-        format!("computing {}: 1/{scale} resolution", picture.request.mode.name())
-    } else if picture.divisor > 1 {
+        return Some(format!("computing {}: 1/{scale} resolution", picture.request.mode.name()));
+    }
+    if picture.divisor > 1 {
         let more = match (session.refine, picture.request.moving) {
             (false, _) => ", refining is paused",
             (true, true) => "",
             (true, false) => ", refining",
         };
-        let full = picture.milliseconds * f64::from(picture.divisor * picture.divisor);
-        let why = if full > PASS_BUDGET_MS { "slow scene: " } else { "" };
-        format!("{why}1/{} resolution{more}", picture.divisor)
-    } else if !picture.finished && session.refine {
-        format!("{} of {} samples per pixel", picture.samples, picture.request.samples)
-    } else {
-        return;
-    };
-    let help = "A slow scene is drawn at a lower resolution while something moves, and refined \
-                when it rests. R pauses and resumes refining.";
-    ui.label(RichText::new(text).small().color(theme::of(ui).accent)).on_hover_text(help);
+        return Some(reduced(picture.divisor, picture.milliseconds) + more);
+    }
+    (!picture.finished && session.refine)
+        .then(|| format!("{} of {} samples per pixel", picture.samples, picture.request.samples))
+}
+
+fn reduced(divisor: u32, milliseconds: f64) -> String {
+    let full = milliseconds * f64::from(divisor * divisor);
+    let why = if full > PASS_BUDGET_MS { "slow scene: " } else { "" };
+    format!("{why}1/{divisor} resolution")
 }
 
 /// The GPU or CPU that draws; if that is not what was requested, why.
