@@ -119,10 +119,15 @@ fn operands(graph: &Graph, shape: ShapeId) -> Vec<ShapeId> {
     let mut found = Vec::new();
     let mut left = vec![graph.shape(shape).formula];
     while let Some(id) = left.pop() {
-        match graph.node(id) {
-            Node::Binary(Binary::Min, a, b) => left.extend([b, a]),
-            Node::Sample(operand, at) if is_own_point(graph, at, level) => found.push(operand),
-            _ => return Vec::new(),
+        let node = graph.node(id);
+        if let Node::Binary(Binary::Min, a, b) = node {
+            left.extend([b, a]);
+        } else if let Node::Sample(operand, at) = node
+            && is_own_point(graph, at, level)
+        {
+            found.push(operand);
+        } else {
+            return Vec::new();
         }
     }
     found
@@ -160,12 +165,15 @@ fn union_without(graph: &mut Graph, root: ShapeId, is_kept: &impl Fn(&ShapeId) -
     let enters = |id| !matches!(graph.node(id), Node::Sample(..));
     for id in reachable_where(graph, &roots, enters) {
         let of = |old: NodeId| new.get(&old).copied().unwrap_or(old);
-        let replaced = match graph.node(id) {
-            Node::Sample(operand, _) if !is_kept(&operand) => far,
-            Node::Sample(..) => id,
-            Node::Binary(Binary::Min, a, b) if of(a) == far => of(b),
-            Node::Binary(Binary::Min, a, b) if of(b) == far => of(a),
-            _ => graph.rebuild(id, of),
+        let node = graph.node(id);
+        let replaced = if let Node::Sample(operand, _) = node {
+            if is_kept(&operand) { id } else { far }
+        } else if let Node::Binary(Binary::Min, a, b) = node
+            && [of(a), of(b)].contains(&far)
+        {
+            if of(a) == far { of(b) } else { of(a) }
+        } else {
+            graph.rebuild(id, of)
         };
         new.insert(id, replaced);
     }
