@@ -4,8 +4,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use sdfc_graph::eval::{FrameValues, Tape};
 
+use super::Cells;
 use super::octree::Octree;
-use super::{Cells, MIN_OPERATIONS};
 use crate::view::View;
 
 /// Larger octrees are not kept after their frame: about 80 MB.
@@ -32,9 +32,6 @@ impl CachedField {
     /// picture has made are used again if the values that the field depends on are the same. With
     /// `proves`, cells are also divided to prove that they hold no surface.
     pub(crate) fn cells<'a>(&self, frame: &'a FrameValues, view: &View, proves: bool) -> Cells<'a> {
-        if self.tape.operations() < MIN_OPERATIONS {
-            return self.whole(frame);
-        }
         let mut kept = self.octree.lock().unwrap_or_else(PoisonError::into_inner);
         let octree = match kept.take().filter(|octree| octree.serves(frame, view)) {
             Some(octree) => octree,
