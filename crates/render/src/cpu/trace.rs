@@ -7,17 +7,17 @@ mod group;
 mod interval;
 mod limits;
 mod march;
+mod rays;
 mod solve;
 
-use super::cells::{Cell, Cells};
+use super::cells::Cell;
 use super::method::CpuMethod;
 use super::pre_intersection::PreIntersection;
-use super::ray::{Batch, Ray, Real};
+use super::ray::{Ray, Real};
 use crate::image::{CAPPED, HIT, MISS};
 
-use descent::descend;
 pub(super) use limits::Limits;
-use march::march;
+pub(super) use rays::trace;
 
 /// A sample of `auto` within this fraction of the tolerance is a hit.
 const HIT_FRACTION: f64 = 0.00390625;
@@ -44,20 +44,6 @@ impl<T: Real> Trace<'_, T> {
         let (t, clearance) = (T::constant(f64::NAN), T::constant(f64::INFINITY));
         Self { t, status: MISS, evaluations: 0, clearance, unproven: false, cell: None }
     }
-}
-
-/// Traces rays; the result has their order. `known` is `None` if nothing is known of any ray.
-pub(super) fn trace<'c, T: Real>(
-    cells: &'c Cells<'_>,
-    range: Option<&mut Batch<'_, T>>,
-    rays: &[Ray<T>],
-    known: Option<&[PreIntersection<T>]>,
-    limits: &Limits<T>,
-) -> Vec<Trace<'c, T>> {
-    if !limits.descends() {
-        return march(cells, range, rays, known, limits);
-    }
-    descend(cells, range, rays, known, limits)
 }
 
 /// A ray while it is marched.

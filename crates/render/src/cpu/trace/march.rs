@@ -97,8 +97,8 @@ pub(super) fn march<T: Real>(
     traces
 }
 
-/// Marches rays in a cell, each from one position to another one. A ray that hits nothing there is a
-/// miss.
+/// Marches rays in a cell, each from one position to another one. A ray that hits nothing there is
+/// a miss.
 pub(super) fn march_segments<T: Real>(
     cell: &Cell,
     fields: &mut Fields<'_, '_, '_, T>,
