@@ -57,8 +57,8 @@ impl CpuMethod {
     /// Returns true if rays skip what is proven to hold no surface.
     pub(crate) fn skips_proven(self) -> bool {
         match self {
-            Self::Sphere => false,
-            Self::Auto | Self::Interval => true,
+            Self::Sphere | Self::Auto => false,
+            Self::Interval => true,
         }
     }
 

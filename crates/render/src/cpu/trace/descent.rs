@@ -231,14 +231,10 @@ impl<'c, T: Real> Descent<'_, 'c, '_, '_, '_, T> {
         }
     }
 
-    /// Marches the other rays: by `interval` through the cell, by other methods from their start.
+    /// Marches the other rays through the cell.
     fn march(&mut self, cell: &'c Cell) {
         let Work { from, to, rest, .. } = &*self.work;
         if rest.is_empty() {
-            return;
-        }
-        if self.limits.method != CpuMethod::Interval {
-            rest.iter().for_each(|&index| self.group.leave_undecided(index));
             return;
         }
         let segments: Vec<(Ray<T>, [T; 2])> =
@@ -328,11 +324,11 @@ impl<T: Real> Limits<T> {
     }
 
     /// True if rays go through the octree in groups. Rays that record their clearance take all of
-    /// their steps.
+    /// their steps, and those of `sphere` and `auto` the steps of the shader.
     pub(super) fn descends(&self) -> bool {
         match self.method {
-            CpuMethod::Sphere => false,
-            CpuMethod::Auto | CpuMethod::Interval => !self.records_clearance,
+            CpuMethod::Sphere | CpuMethod::Auto => false,
+            CpuMethod::Interval => !self.records_clearance,
         }
     }
 }
