@@ -233,6 +233,8 @@ impl<'r> Compiler<'r> {
                 let values = parse_values(scene.params(), set)?;
                 (scene, values)
             }
+            // Another try would read the imports again.
+            Err(errors) if set.is_empty() => return Err(errors.into()),
             Err(errors) => {
                 // The values may fix what the defaults break.
                 let values = parse_values(&self.declared_params(name, text), set);
