@@ -3,16 +3,12 @@
 use super::Number;
 
 /// A number and its partial derivatives with respect to the coordinates of the point. `N` is `f64`,
-/// a packet of them for several points at once, or an interval for a box of points.
+/// or a packet of them for several points at once.
 ///
 /// At kinks the derivative is the derivative of one branch: of the first argument for `min`, `max`
 /// and `clamp` on a tie, and +1 for `abs` at 0. `sqrt` and `length` have the derivative 0 at 0,
 /// operations that jump (`floor`, `sign`, comparisons) everywhere. A partial derivative that is 0
 /// stays 0 even where the outer derivative is infinite.
-///
-/// In intervals, the partial derivatives are bounds of all of them in a region, those of both sides
-/// of a kink included. They are unbounded where the value may jump. So a function is monotone along
-/// a segment if its derivative along the segment is bounded and has one sign.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Dual<N = f64> {
     /// The value.
@@ -23,18 +19,16 @@ pub struct Dual<N = f64> {
 
 impl<N: Number> Dual<N> {
     /// The coordinates of a point, as the independent variables.
-    #[inline(always)]
-    pub fn point([x, y, z]: [N; 3]) -> [Self; 3] {
-        let [zero, one] = [0.0, 1.0].map(N::constant);
-        [
-            Self { value: x, partials: [one, zero, zero] },
-            Self { value: y, partials: [zero, one, zero] },
-            Self { value: z, partials: [zero, zero, one] },
-        ]
+    pub fn point(point: [N; 3]) -> [Self; 3] {
+        std::array::from_fn(|axis| {
+            let partial = |of: usize| N::constant(if of == axis { 1.0 } else { 0.0 });
+            Self { value: point[axis], partials: std::array::from_fn(partial) }
+        })
     }
 
+    /// A value whose derivative is 0, or counts as 0.
     #[inline(always)]
-    fn constant_dual(value: N) -> Self {
+    fn flat(value: N) -> Self {
         Self { value, partials: [N::constant(0.0); 3] }
     }
 
@@ -47,191 +41,170 @@ impl<N: Number> Dual<N> {
     /// A function of two numbers, given its value and partial derivatives.
     #[inline(always)]
     fn chain2(self, y: Self, value: N, slopes: [N; 2]) -> Self {
-        let [by_x, by_y] = slopes;
-        let partials = std::array::from_fn(|i| {
-            scaled(self.partials[i], by_x).add(scaled(y.partials[i], by_y))
-        });
-        Self { value, partials }
+        let partial =
+            |i: usize| scaled(self.partials[i], slopes[0]).add(scaled(y.partials[i], slopes[1]));
+        Self { value, partials: std::array::from_fn(partial) }
     }
 
-    /// A value that is constant between its jumps.
+    /// `yes` where a truth value is true, else `no`.
     #[inline(always)]
-    fn stepped(value: N) -> Self {
-        Self { value, partials: [value.jump_slope(); 3] }
-    }
-
-    /// The number with unbounded derivatives where a truth value may change.
-    #[inline(always)]
-    fn with_jump(self, truth: N) -> Self {
-        let jump = truth.jump_slope();
-        Self { value: self.value, partials: self.partials.map(|partial| partial.add(jump)) }
-    }
-
-    /// A value with the derivatives of this number if a condition is true, else with those of
-    /// another one.
-    #[inline(always)]
-    fn chosen(self, condition: N, other: Self, value: N) -> Self {
-        let partials =
-            std::array::from_fn(|i| condition.select(self.partials[i], other.partials[i]));
-        Self { value, partials }
+    fn choose(truth: N, yes: Self, no: Self) -> Self {
+        let partial = |i: usize| truth.select(yes.partials[i], no.partials[i]);
+        Self { value: truth.select(yes.value, no.value), partials: std::array::from_fn(partial) }
     }
 }
 
 /// The product; 0 where the partial derivative is 0, even if the slope is infinite.
 #[inline(always)]
 fn scaled<N: Number>(partial: N, slope: N) -> N {
-    let zero = N::constant(0.0);
-    partial.eq(zero).select(zero, partial.mul(slope))
+    unless_zero(partial, partial.mul(slope))
 }
 
-/// The slope, or 0 where the number is 0.
+/// The result, or 0 where the number is 0.
 #[inline(always)]
-fn unless_zero<N: Number>(number: N, slope: N) -> N {
+fn unless_zero<N: Number>(number: N, result: N) -> N {
     let zero = N::constant(0.0);
-    number.eq(zero).select(zero, slope)
+    number.eq(zero).select(zero, result)
 }
 
 impl<N: Number> Number for Dual<N> {
-    const HAS_VECTORS: bool = N::HAS_VECTORS;
-
-    #[inline(always)]
+    #[inline]
     fn constant(value: f64) -> Self {
-        Self::constant_dual(N::constant(value))
+        Self::flat(N::constant(value))
     }
 
-    #[inline(always)]
+    #[inline]
     fn neg(self) -> Self {
         self.chain(self.value.neg(), N::constant(-1.0))
     }
-    #[inline(always)]
+    #[inline]
     fn abs(self) -> Self {
-        let [minus, plus] = [-1.0, 1.0].map(N::constant);
-        self.chain(self.value.abs(), self.value.lt(N::constant(0.0)).select(minus, plus))
+        let slope = self.value.lt(N::constant(0.0)).select(N::constant(-1.0), N::constant(1.0));
+        self.chain(self.value.abs(), slope)
     }
-    #[inline(always)]
+    #[inline]
     fn sign(self) -> Self {
-        Self::stepped(self.value.sign())
+        Self::flat(self.value.sign())
     }
-    #[inline(always)]
+    #[inline]
     fn floor(self) -> Self {
-        Self::stepped(self.value.floor())
+        Self::flat(self.value.floor())
     }
-    #[inline(always)]
+    #[inline]
     fn ceil(self) -> Self {
-        Self::stepped(self.value.ceil())
+        Self::flat(self.value.ceil())
     }
-    #[inline(always)]
+    #[inline]
     fn round(self) -> Self {
-        Self::stepped(self.value.round())
+        Self::flat(self.value.round())
     }
-    #[inline(always)]
+    #[inline]
     fn trunc(self) -> Self {
-        Self::stepped(self.value.trunc())
+        Self::flat(self.value.trunc())
     }
-    #[inline(always)]
+    #[inline]
     fn square(self) -> Self {
         self.chain(self.value.square(), N::constant(2.0).mul(self.value))
     }
-    #[inline(always)]
+    #[inline]
     fn sqrt(self) -> Self {
         let root = self.value.sqrt();
         self.chain(root, unless_zero(self.value, N::constant(0.5).div(root)))
     }
-    #[inline(always)]
+    #[inline]
     fn inverse_sqrt(self) -> Self {
         let value = self.value.inverse_sqrt();
         self.chain(value, N::constant(-0.5).mul(value).div(self.value))
     }
-    #[inline(always)]
+    #[inline]
     fn exp(self) -> Self {
         let value = self.value.exp();
         self.chain(value, value)
     }
-    #[inline(always)]
+    #[inline]
     fn exp2(self) -> Self {
         let value = self.value.exp2();
         self.chain(value, value.mul(N::constant(std::f64::consts::LN_2)))
     }
-    #[inline(always)]
+    #[inline]
     fn log(self) -> Self {
         self.chain(self.value.log(), N::constant(1.0).div(self.value))
     }
-    #[inline(always)]
+    #[inline]
     fn log2(self) -> Self {
         self.chain(self.value.log2(), N::constant(std::f64::consts::LOG2_E).div(self.value))
     }
-    #[inline(always)]
+    #[inline]
     fn sin(self) -> Self {
         self.chain(self.value.sin(), self.value.cos())
     }
-    #[inline(always)]
+    #[inline]
     fn cos(self) -> Self {
         self.chain(self.value.cos(), self.value.sin().neg())
     }
-    #[inline(always)]
+    #[inline]
     fn tan(self) -> Self {
         let value = self.value.tan();
         self.chain(value, N::constant(1.0).add(value.square()))
     }
-    #[inline(always)]
+    #[inline]
     fn asin(self) -> Self {
-        self.chain(self.value.asin(), complement_of_square(self.value).inverse_sqrt())
+        self.chain(self.value.asin(), inverse_cosine(self.value))
     }
-    #[inline(always)]
+    #[inline]
     fn acos(self) -> Self {
-        self.chain(self.value.acos(), complement_of_square(self.value).inverse_sqrt().neg())
+        self.chain(self.value.acos(), inverse_cosine(self.value).neg())
     }
-    #[inline(always)]
+    #[inline]
     fn atan(self) -> Self {
         let one = N::constant(1.0);
         self.chain(self.value.atan(), one.div(one.add(self.value.square())))
     }
-    #[inline(always)]
+    #[inline]
     fn sinh(self) -> Self {
         self.chain(self.value.sinh(), self.value.cosh())
     }
-    #[inline(always)]
+    #[inline]
     fn cosh(self) -> Self {
         self.chain(self.value.cosh(), self.value.sinh())
     }
-    #[inline(always)]
+    #[inline]
     fn tanh(self) -> Self {
         let value = self.value.tanh();
-        self.chain(value, complement_of_square(value))
+        self.chain(value, N::constant(1.0).sub(value.square()))
     }
-    #[inline(always)]
+    #[inline]
     fn not(self) -> Self {
-        Self::stepped(self.value.not())
+        Self::flat(self.value.not())
     }
 
-    #[inline(always)]
+    #[inline]
     fn add(self, y: Self) -> Self {
-        let partials = std::array::from_fn(|i| self.partials[i].add(y.partials[i]));
-        Self { value: self.value.add(y.value), partials }
+        self.chain2(y, self.value.add(y.value), [N::constant(1.0); 2])
     }
-    #[inline(always)]
+    #[inline]
     fn sub(self, y: Self) -> Self {
-        let partials = std::array::from_fn(|i| self.partials[i].sub(y.partials[i]));
-        Self { value: self.value.sub(y.value), partials }
+        self.chain2(y, self.value.sub(y.value), [1.0, -1.0].map(N::constant))
     }
-    #[inline(always)]
+    #[inline]
     fn mul(self, y: Self) -> Self {
         self.chain2(y, self.value.mul(y.value), [y.value, self.value])
     }
-    #[inline(always)]
+    #[inline]
     fn div(self, y: Self) -> Self {
         let value = self.value.div(y.value);
-        self.chain2(y, value, [N::constant(1.0).div(y.value), value.neg().div(y.value)])
+        let slopes = [N::constant(1.0).div(y.value), value.neg().div(y.value)];
+        self.chain2(y, value, slopes)
     }
-    #[inline(always)]
+    #[inline]
     fn min(self, y: Self) -> Self {
-        y.chosen(y.value.lt(self.value), self, self.value.min(y.value))
+        Self::choose(y.value.lt(self.value), y, self)
     }
-    #[inline(always)]
+    #[inline]
     fn max(self, y: Self) -> Self {
-        y.chosen(self.value.lt(y.value), self, self.value.max(y.value))
+        Self::choose(self.value.lt(y.value), y, self)
     }
-    #[inline(always)]
+    #[inline]
     fn pow(self, y: Self) -> Self {
         let value = self.value.pow(y.value);
         let by_base = y.value.mul(self.value.pow(y.value.sub(N::constant(1.0))));
@@ -239,113 +212,84 @@ impl<N: Number> Number for Dual<N> {
         let by_power = unless_zero(self.value, value.mul(self.value.log()));
         self.chain2(y, value, [by_base, by_power])
     }
-    #[inline(always)]
+    #[inline]
     fn atan2(self, x: Self) -> Self {
-        let (along, across, zero) = (x.value, self.value, N::constant(0.0));
-        let norm = across.square().add(along.square());
-        let slopes = [along, across.neg()].map(|part| unless_zero(norm, part.div(norm)));
-        let angle = self.chain2(x, across.atan2(along), slopes);
-        // The angle jumps where y is 0 and x is negative.
-        angle.with_jump(across.eq(zero).and(along.le(zero)))
+        let norm = self.value.square().add(x.value.square());
+        let slopes = [x.value, self.value.neg()].map(|side| unless_zero(norm, side.div(norm)));
+        self.chain2(x, self.value.atan2(x.value), slopes)
     }
-    #[inline(always)]
+    #[inline]
     fn step(self, x: Self) -> Self {
-        Self::stepped(self.value.step(x.value))
+        Self::flat(self.value.step(x.value))
     }
-    #[inline(always)]
+    #[inline]
     fn hash(self, x: Self) -> Self {
-        Self::stepped(self.value.hash(x.value))
+        Self::flat(self.value.hash(x.value))
     }
-    #[inline(always)]
+    #[inline]
     fn normalize_lane(self, length: Self) -> Self {
-        let (zero, is_zero) = (Self::constant(0.0), length.value.eq(N::constant(0.0)));
-        let value = self.value.normalize_lane(length.value);
-        zero.chosen(is_zero, self.div(length), value).with_jump(is_zero)
+        let Self { partials, .. } = self.div(length);
+        let partials = partials.map(|partial| unless_zero(length.value, partial));
+        Self { value: self.value.normalize_lane(length.value), partials }
     }
-    #[inline(always)]
+    #[inline]
     fn lt(self, y: Self) -> Self {
-        Self::stepped(self.value.lt(y.value))
+        Self::flat(self.value.lt(y.value))
     }
-    #[inline(always)]
+    #[inline]
     fn le(self, y: Self) -> Self {
-        Self::stepped(self.value.le(y.value))
+        Self::flat(self.value.le(y.value))
     }
-    #[inline(always)]
+    #[inline]
     fn eq(self, y: Self) -> Self {
-        Self::stepped(self.value.eq(y.value))
+        Self::flat(self.value.eq(y.value))
     }
-    #[inline(always)]
+    #[inline]
     fn ne(self, y: Self) -> Self {
-        Self::stepped(self.value.ne(y.value))
+        Self::flat(self.value.ne(y.value))
     }
-    #[inline(always)]
+    #[inline]
     fn and(self, y: Self) -> Self {
-        Self::stepped(self.value.and(y.value))
+        Self::flat(self.value.and(y.value))
     }
-    #[inline(always)]
+    #[inline]
     fn or(self, y: Self) -> Self {
-        Self::stepped(self.value.or(y.value))
+        Self::flat(self.value.or(y.value))
     }
 
-    #[inline(always)]
+    #[inline]
     fn is_definitely_false(self) -> bool {
         self.value.is_definitely_false()
     }
+    #[inline]
     fn element(self, list: &[f64]) -> Self {
-        Self::stepped(self.value.element(list))
+        Self::flat(self.value.element(list))
     }
 
-    #[inline(always)]
+    #[inline]
     fn mix(self, y: Self, t: Self) -> Self {
         let by_t = t.chain(N::constant(0.0), y.value.sub(self.value));
-        let weights = [N::constant(1.0).sub(t.value), t.value];
-        let Self { partials, .. } = self.chain2(y, N::constant(0.0), weights).add(by_t);
+        let slopes = [N::constant(1.0).sub(t.value), t.value];
+        let Self { partials, .. } = self.chain2(y, N::constant(0.0), slopes).add(by_t);
         Self { value: self.value.mix(y.value, t.value), partials }
     }
-    #[inline(always)]
+    #[inline]
     fn clamp(self, lo: Self, hi: Self) -> Self {
         self.max(lo).min(hi)
     }
-    #[inline(always)]
+    #[inline]
     fn smoothstep(self, hi: Self, x: Self) -> Self {
-        let value = self.value.smoothstep(hi.value, x.value);
         let t = x.sub(self).div(hi.sub(self)).saturate();
-        let slope = N::constant(6.0).mul(t.value.mul(N::constant(1.0).sub(t.value)));
-        t.chain(value, slope)
+        t.square().mul(Self::constant(3.0).sub(t.add(t)))
     }
-    #[inline(always)]
+    #[inline]
     fn select(self, yes: Self, no: Self) -> Self {
-        let value = self.value.select(yes.value, no.value);
-        yes.chosen(self.value, no, value).with_jump(self.value)
-    }
-
-    #[inline(always)]
-    fn fract_with_floor(self, whole: Self) -> Self {
-        Self { value: self.value.fract_with_floor(whole.value), ..self.sub(whole) }
-    }
-    #[inline(always)]
-    fn rem_with_quotient(self, y: Self, whole: Self) -> Self {
-        let value = self.value.rem_with_quotient(y.value, whole.value);
-        Self { value, ..self.sub(y.mul(whole)) }
-    }
-    #[inline(always)]
-    fn x_times_one_minus_x(self, y: Self, c: Self) -> Self {
-        // c x (1 - x)
-        let (x, one) = (self.value, N::constant(1.0));
-        let by_x = c.value.mul(one.sub(x.add(x)));
-        let value = x.x_times_one_minus_x(y.value, c.value);
-        self.chain2(c, value, [by_x, x.mul(one.sub(x))])
-    }
-    #[inline(always)]
-    fn clamp_residual(self, lo: Self, hi: Self) -> Self {
-        // Where lo > hi, clamp is hi.
-        let Self { partials, .. } = Self::constant(0.0).min(self.sub(lo)).max(self.sub(hi));
-        Self { value: self.value.clamp_residual(lo.value, hi.value), partials }
+        Self::choose(self.value, yes, no)
     }
 }
 
-/// `1 - x²`
+/// `1 / sqrt(1 - x²)`, the derivative of the arc sine.
 #[inline(always)]
-fn complement_of_square<N: Number>(x: N) -> N {
-    N::constant(1.0).sub(x.square())
+fn inverse_cosine<N: Number>(x: N) -> N {
+    N::constant(1.0).sub(x.square()).inverse_sqrt()
 }

@@ -11,20 +11,20 @@ use super::hash::hash;
 macro_rules! float {
     ($float:ident, pow: $pow:path, atan2: $atan2:path, $($name:ident: $unary:path),* $(,)?) => {
         impl Number for $float {
-            #[inline(always)]
+            #[inline]
             fn constant(value: f64) -> Self {
                 value as Self
             }
 
-            #[inline(always)]
+            #[inline]
             fn neg(self) -> Self {
                 -self
             }
-            #[inline(always)]
+            #[inline]
             fn abs(self) -> Self {
                 self.abs()
             }
-            #[inline(always)]
+            #[inline]
             fn sign(self) -> Self {
                 if self > 0.0 {
                     1.0
@@ -34,138 +34,137 @@ macro_rules! float {
                     self * 0.0
                 }
             }
-            #[inline(always)]
+            #[inline]
             fn floor(self) -> Self {
                 self.floor()
             }
-            #[inline(always)]
+            #[inline]
             fn ceil(self) -> Self {
                 self.ceil()
             }
-            #[inline(always)]
+            #[inline]
             fn round(self) -> Self {
                 self.round_ties_even()
             }
-            #[inline(always)]
+            #[inline]
             fn trunc(self) -> Self {
                 self.trunc()
             }
-            #[inline(always)]
+            #[inline]
             fn square(self) -> Self {
                 self * self
             }
-            #[inline(always)]
+            #[inline]
             fn sqrt(self) -> Self {
                 self.sqrt()
             }
-            #[inline(always)]
+            #[inline]
             fn inverse_sqrt(self) -> Self {
                 1.0 / self.sqrt()
             }
             $(
-                #[inline(always)]
+                #[inline]
                 fn $name(self) -> Self {
                     $unary(self)
                 }
             )*
-            #[inline(always)]
+            #[inline]
             fn not(self) -> Self {
                 1.0 - self
             }
 
-            #[inline(always)]
+            #[inline]
             fn add(self, y: Self) -> Self {
                 self + y
             }
-            #[inline(always)]
+            #[inline]
             fn sub(self, y: Self) -> Self {
                 self - y
             }
-            #[inline(always)]
+            #[inline]
             fn mul(self, y: Self) -> Self {
                 self * y
             }
-            #[inline(always)]
+            #[inline]
             fn div(self, y: Self) -> Self {
                 self / y
             }
-            #[inline(always)]
+            #[inline]
             fn min(self, y: Self) -> Self {
                 if y < self { y } else { self }
             }
-            #[inline(always)]
+            #[inline]
             fn max(self, y: Self) -> Self {
                 if y > self { y } else { self }
             }
-            #[inline(always)]
+            #[inline]
             fn pow(self, y: Self) -> Self {
                 if self < 0.0 { Self::NAN } else { $pow(self + 0.0, y) }
             }
-            #[inline(always)]
+            #[inline]
             fn atan2(self, x: Self) -> Self {
                 $atan2(self + 0.0, x + 0.0) // turns -0 into 0
             }
-            #[inline(always)]
+            #[inline]
             fn step(self, x: Self) -> Self {
                 truth(x >= self)
             }
-            #[inline(always)]
+            #[inline]
             fn hash(self, x: Self) -> Self {
                 hash(self.into(), x.into()) as Self
             }
-            #[inline(always)]
+            #[inline]
             fn normalize_lane(self, length: Self) -> Self {
                 if length == 0.0 { 0.0 } else { self / length }
             }
-            #[inline(always)]
+            #[inline]
             fn lt(self, y: Self) -> Self {
                 truth(self < y)
             }
-            #[inline(always)]
+            #[inline]
             fn le(self, y: Self) -> Self {
                 truth(self <= y)
             }
-            #[inline(always)]
+            #[inline]
             fn eq(self, y: Self) -> Self {
                 truth(self == y)
             }
-            #[inline(always)]
+            #[inline]
             fn ne(self, y: Self) -> Self {
                 truth(self != y)
             }
-            #[inline(always)]
+            #[inline]
             fn and(self, y: Self) -> Self {
                 self * y
             }
-            #[inline(always)]
+            #[inline]
             fn or(self, y: Self) -> Self {
                 Number::max(self, y)
             }
 
-            #[inline(always)]
+            #[inline]
             fn is_definitely_false(self) -> bool {
                 self == 0.0
             }
-            #[inline(always)]
             fn element(self, list: &[f64]) -> Self {
                 let last = list.len().saturating_sub(1);
                 let at = (self.max(0.0) as usize).min(last);
                 list.get(at).map_or(Self::NAN, |&value| value as Self)
             }
-            #[inline(always)]
+            #[inline]
             fn mix(self, y: Self, t: Self) -> Self {
                 self * (1.0 - t) + y * t
             }
-            #[inline(always)]
+            #[inline]
             fn clamp(self, lo: Self, hi: Self) -> Self {
                 Number::min(Number::max(self, lo), hi)
             }
-            #[inline(always)]
+            #[inline]
             fn smoothstep(self, hi: Self, x: Self) -> Self {
                 let t = ((x - self) / (hi - self + 0.0)).saturate();
                 t * t * (3.0 - 2.0 * t)
             }
-            #[inline(always)]
+            #[inline]
             fn select(self, yes: Self, no: Self) -> Self {
                 if self != 0.0 { yes } else { no }
             }
@@ -214,7 +213,7 @@ float!(
 );
 
 /// 1 for true, 0 for false.
-#[inline(always)]
+#[inline]
 fn truth<F: From<bool>>(holds: bool) -> F {
     F::from(holds)
 }

@@ -50,13 +50,11 @@ mod number;
 mod op;
 mod packet;
 mod record;
-mod registers;
 mod sample;
 mod scalarise;
 mod specialize;
 mod tape;
 mod tracer;
-mod vectors;
 
 pub use affine::Affine;
 pub use dual::Dual;
@@ -71,4 +69,3 @@ pub use packet::Packet;
 pub use sample::{FieldSample, evaluate_frame, sample_field};
 pub use specialize::{FieldOver, RootsOver};
 pub use tape::{Tape, TapeError};
-pub use vectors::vectorized;
