@@ -4,7 +4,7 @@ import { readFile, readdir } from "node:fs/promises";
 import { dirname, extname, join } from "node:path";
 
 /// The page of the gallery. Its scenes come first.
-const GALLERY = "docs/gallery.md";
+export const GALLERY = "docs/gallery.md";
 /// The folders of examples, in the order in which they are shown.
 const FOLDERS = [
   ["More scenes", "gallery"], ["One idea each", "."], ["First steps", "course"], ["Camera, light, settings", "settings"],
@@ -32,7 +32,7 @@ const imageOf = ({ name, picture }) => name.replace(/\.sdf$/, extname(picture));
 
 /// Returns the scenes of the gallery in the order of their pictures. The source of a picture is the
 /// block before it, which has a heading, or the file of the same name, which `read` returns.
-export async function galleryScenes(text, read) {
+async function galleryScenes(text, read) {
   const found = [];
   const page = text.replaceAll("\r\n", "\n");
   let start = 0;

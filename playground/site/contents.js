@@ -17,7 +17,10 @@ if (entries.size > 0) {
   const mark = () => {
     const passed = heads.filter((head) => head.getBoundingClientRect().top < 120);
     const current = (passed.at(-1) ?? heads[0])?.id;
-    for (const [id, link] of entries) link.toggleAttribute("aria-current", id === current);
+    for (const [id, link] of entries) {
+      if (id === current) link.setAttribute("aria-current", "location");
+      else link.removeAttribute("aria-current");
+    }
   };
   addEventListener("scroll", mark, { passive: true });
   mark();

@@ -3,8 +3,6 @@
 import { tile } from "./landing.js";
 import { escape } from "./page.js";
 
-export const GALLERY = "docs/gallery.md";
-
 /// Makes the pictures of the page open their scenes in the playground, and adds those of all other
 /// scenes at its end.
 export function addTiles(page, [own, ...others]) {

@@ -3,10 +3,11 @@
 const frame = document.querySelector(".live iframe");
 if (frame) {
   frame.src = frame.dataset.src;
-  const look = () => {
+  // A browser that cannot draw the scene keeps the picture: after 30 seconds nobody looks any more.
+  const look = (left = 300) => {
     const { state } = frame.contentDocument?.body?.dataset ?? {};
     if (state === "drawn") frame.classList.add("ready");
-    else setTimeout(look, 100);
+    else if (left > 0) setTimeout(look, 100, left - 1);
   };
   look();
 }

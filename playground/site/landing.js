@@ -2,7 +2,7 @@
 
 import { escape, frame } from "./page.js";
 
-/// The pictures of the first page, in this order. Others fill up the row if one is missing.
+/// The pictures of the first page, in this order.
 const SHELF = ["page/watch.sdf", "page/reef.sdf", "page/night_city.sdf", "page/tea.sdf", "page/mandelbulb.sdf", "page/synthesizer.sdf", "page/bridge.sdf", "page/poster.sdf"];
 
 const RESULTS = [
@@ -24,15 +24,18 @@ const NEXT = [
 const card = ([url, title, text]) => `<a class="card" href="${url}"><h3>${title}</h3><p>${text}</p></a>`;
 
 /// A picture that opens its scene in the playground.
-export const tile = ({ name, title, image }, up = "") =>
-  `<a class="tile" href="${up}playground/index.html?example=${name}"><img src="${up}playground/examples/${image}" alt="" loading="lazy" width="640" height="400"><span>${escape(title)}</span></a>`;
+export const tile = ({ name, title, image }) =>
+  `<a class="tile" href="playground/index.html?example=${name}"><img src="playground/examples/${image}" alt="" loading="lazy" width="640" height="400"><span>${escape(title)}</span></a>`;
 
 /// `hero` has `code`, the coloured source of the scene that runs in the page, and `open`, its
 /// address in the playground. `sections` are those of [`findScenes`].
 export function landing(hero, sections, site) {
   const all = sections.flatMap(({ scenes }) => scenes);
-  const chosen = SHELF.map((name) => all.find((scene) => scene.name === name)).filter(Boolean);
-  const shelf = [...new Set([...chosen, ...all])].slice(0, SHELF.length);
+  const shelf = SHELF.map((name) => {
+    const found = all.find((scene) => scene.name === name);
+    if (!found) throw new Error(`the first page shows ${name}, which is no scene of the playground`);
+    return found;
+  });
   const { repository } = site;
   const body = `<main id="content" class="landing">
 <section class="hero">
@@ -45,13 +48,13 @@ export function landing(hero, sections, site) {
     <p class="hint">The playground compiles and draws in your browser. There is nothing to install.</p>
   </div>
   <figure class="live">
-    <div class="stage"><img src="hero.png" alt="A lattice around a glowing ball" width="960" height="720"><iframe data-src="hero.html" title="The scene, drawn in this page"></iframe></div>
+    <div class="stage"><img src="hero.png" alt="A round lantern throws the pattern of its holes on the floor and the wall" width="960" height="720"><iframe data-src="hero.html" title="The scene, drawn in this page"></iframe></div>
     <div class="scene"><pre><code>${hero.code}</code></pre><a class="open" href="${hero.open}">Edit this scene</a></div>
   </figure>
 </section>
 <section>
   <h2>Scenes</h2>
-  <p class="lead">Most of these are ten to fifty lines. Choose one to see its source and change it.</p>
+  <p class="lead">Each is one file of at most a hundred lines. Choose one to see its source and change it.</p>
   <div class="tiles">${shelf.map((scene) => tile(scene)).join("\n")}</div>
   <p><a href="gallery.html">All ${all.length} scenes</a></p>
 </section>

@@ -4,9 +4,10 @@
 use std::fs::File;
 use std::path::PathBuf;
 
-use image::RgbImage;
 use image::codecs::jpeg::JpegEncoder;
-use sdfc::{Backend, Compiler, PictureOptions, Scene, no_progress};
+use image::{Rgb, RgbImage};
+use sdfc::{Backend, Compiler, PictureOptions, no_progress};
+use sdfc_render::linear_to_srgb8;
 use sdfc_tests::repository;
 
 /// Width and height of a picture on the page, in pixels.
@@ -22,7 +23,9 @@ const SMALL_SAMPLES: u32 = 1;
 /// The number of blocks along the width and the height, whose mean colours are compared.
 const BLOCKS: [u32; 2] = [16, 9];
 /// The largest mean difference of the colours of blocks, of 255. Few rays leave noise at edges.
-pub const MEAN_TOLERANCE: f64 = 6.0;
+const MEAN_TOLERANCE: f64 = 6.0;
+/// The largest difference of the colours of one block, of 255.
+const MAX_TOLERANCE: f64 = 40.0;
 
 /// A scene of the gallery.
 pub struct Entry {
@@ -37,37 +40,69 @@ impl Entry {
         folder().join(&self.name).with_extension("jpg")
     }
 
-    fn compiled(&self) -> Scene {
+    /// Returns the picture of the scene.
+    fn drawn(&self, size: [u32; 2], options: PictureOptions) -> RgbImage {
         let scene = Compiler::new().compile(&self.name, &self.text);
-        scene.unwrap_or_else(|errors| panic!("{errors}"))
+        let scene = scene.unwrap_or_else(|errors| panic!("{errors}"));
+        let drawn = scene.render(&options.size(size), &mut no_progress).expect("it is drawn");
+        let [width, height] = size;
+        RgbImage::from_raw(width, height, drawn.image.to_srgb8()).expect("three bytes per pixel")
     }
 
-    /// Returns how far the picture on the page is from the scene, as the mean difference of the
-    /// colours of blocks, of 255; infinite if there is no picture of the right size.
-    pub fn difference(&self) -> f64 {
+    /// Returns how far the picture on the page is from the scene; infinitely far if there is no
+    /// picture of the right size.
+    pub fn difference(&self) -> Difference {
         let page = image::open(self.picture()).map(image::DynamicImage::into_rgb8);
         let Some(page) = page.ok().filter(|page| page.dimensions() == SIZE.into()) else {
-            return f64::INFINITY;
+            return Difference { mean: f64::INFINITY, worst: f64::INFINITY };
         };
-        let options = PictureOptions::new()
-            .size(SMALL_SIZE)
-            .backend(Backend::Cpu)
-            .samples(Some(SMALL_SAMPLES));
-        let small = self.compiled().render(&options, &mut no_progress).expect("it is drawn");
-        let small = image::load_from_memory(&small.image.to_png().expect("a picture in memory"));
-        mean_difference(&page, &small.expect("a picture").into_rgb8())
+        let options = PictureOptions::new().backend(Backend::Cpu).samples(Some(SMALL_SAMPLES));
+        Difference::of(&page, &self.drawn(SMALL_SIZE, options))
     }
 
     /// Draws the picture on the page.
     pub fn draw(&self) {
-        let options = PictureOptions::new().size(SIZE).samples(Some(SAMPLES));
-        let drawn = self.compiled().render(&options, &mut no_progress).expect("it is drawn");
-        let png = drawn.image.to_png().expect("a picture in memory");
-        let picture = image::load_from_memory(&png).expect("a picture").into_rgb8();
+        let picture = self.drawn(SIZE, PictureOptions::new().samples(Some(SAMPLES)));
         let mut file = File::create(self.picture()).expect("the folder is there");
         let encoder = JpegEncoder::new_with_quality(&mut file, JPEG_QUALITY);
         picture.write_with_encoder(encoder).expect("the file can be written");
     }
+}
+
+/// The difference of two pictures, by the mean colours of their blocks, of 255.
+#[derive(Clone, Copy)]
+pub struct Difference {
+    /// The mean over all blocks.
+    mean: f64,
+    /// The mean over the components of the block that differs most.
+    worst: f64,
+}
+
+impl Difference {
+    fn of(a: &RgbImage, b: &RgbImage) -> Self {
+        let (a, b) = (blocks(a), blocks(b));
+        let differences: Vec<f64> = a.pixels().zip(b.pixels()).map(|(a, b)| apart(a, b)).collect();
+        let mean = differences.iter().sum::<f64>() / differences.len() as f64;
+        Self { mean, worst: differences.iter().copied().fold(0.0, f64::max) }
+    }
+
+    /// Returns true if the pictures show the same scene.
+    pub fn is_small(self) -> bool {
+        self.mean <= MEAN_TOLERANCE && self.worst <= MAX_TOLERANCE
+    }
+}
+
+impl std::fmt::Display for Difference {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { mean, worst } = self;
+        let limits = format!("at most {MEAN_TOLERANCE} and {MAX_TOLERANCE}");
+        write!(f, "the mean difference is {mean:.2}, that of the worst block {worst:.2}; {limits}")
+    }
+}
+
+/// Returns the mean difference of the components of two colours.
+fn apart(a: &Rgb<u8>, b: &Rgb<u8>) -> f64 {
+    a.0.iter().zip(&b.0).map(|(a, b)| f64::from(a.abs_diff(*b))).sum::<f64>() / 3.0
 }
 
 fn folder() -> PathBuf {
@@ -101,26 +136,12 @@ fn blocks(picture: &RgbImage) -> RgbImage {
                 *sum += linear(value);
             }
         }
-        image::Rgb(light.map(|sum| encoded(sum / f64::from(wide * high))))
+        Rgb(light.map(|sum| linear_to_srgb8((sum / f64::from(wide * high)) as f32)))
     })
-}
-
-/// Returns the mean difference of the blocks of two pictures.
-fn mean_difference(a: &RgbImage, b: &RgbImage) -> f64 {
-    let (a, b) = (blocks(a).into_raw(), blocks(b).into_raw());
-    let differences = a.iter().zip(&b).map(|(a, b)| f64::from(a.abs_diff(*b)));
-    differences.sum::<f64>() / a.len() as f64
 }
 
 /// Linear light of an sRGB component.
 fn linear(value: u8) -> f64 {
     let value = f64::from(value) / 255.0;
     if value <= 0.04045 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }
-}
-
-/// The sRGB component of linear light.
-fn encoded(light: f64) -> u8 {
-    let value =
-        if light <= 0.003_130_8 { 12.92 * light } else { 1.055 * light.powf(1.0 / 2.4) - 0.055 };
-    (255.0 * value).round() as u8
 }

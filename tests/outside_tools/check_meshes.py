@@ -16,7 +16,6 @@ import tempfile
 from pathlib import Path
 
 import ezdxf
-import ezdxf.math
 import manifold3d
 import numpy as np
 import pymeshlab
@@ -127,7 +126,7 @@ def by_admesh(path):
 
 
 def check_mesh(sdfc, scene, folder, expected):
-    """Prints nothing; returns the numbers, the certificate and the defects."""
+    """Returns the numbers, the certificate and the defects."""
     files = {kind: folder / f"mesh.{kind}" for kind in ["stl", "ply", "obj", "3mf"]}
     report = folder / "mesh.json"
     for path in files.values():
@@ -135,10 +134,12 @@ def check_mesh(sdfc, scene, folder, expected):
     found = json.loads(report.read_text())
     shells = found["shells"]
     cavities = sum(shell["is_cavity"] for shell in shells)
-    holes = sum(shell["holes"] for shell in shells)
+    holes = sum(shell["holes"] or 0 for shell in shells)
     own = (len(shells) - cavities, cavities, holes)
     counted, defects = by_trimesh(files["ply"])
     defects += by_manifold(files["ply"]) + by_meshlab(files["obj"]) + by_admesh(files["stl"])
+    if any(shell["holes"] is None for shell in shells):
+        defects.append("sdfc: a part is open")
     if counted != own:
         defects.append(f"trimesh counts {counted}, and sdfc {own}")
     if expected and own != expected:
@@ -159,10 +160,13 @@ def check_contour(sdfc, folder):
     error = json.loads(report.read_text())["certificate"]["error"]
     for line in drawing.modelspace():
         for part in line.virtual_entities():
-            ends = part.flattening(error / 100) if part.dxftype() == "ARC" else [part.dxf.start]
-            for point in ends:
-                away = min(outline(point), abs(point.x**2 + point.y**2 - 0.0625) / 0.5)
-                if away > 1.1 * error:
+            if part.dxftype() == "ARC":
+                points = part.flattening(error / 100)
+            else:
+                points = [part.dxf.start, part.dxf.start.lerp(part.dxf.end)]
+            for point in points:
+                away = min(outline(point), abs(np.hypot(point.x, point.y) - 0.25))
+                if away > 1.02 * error:
                     defects.append(f"ezdxf: a point is {away} from the section")
     return defects
 

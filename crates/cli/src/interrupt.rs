@@ -79,7 +79,7 @@ impl Interrupt {
                 thread::sleep(PERIOD);
             }
             thread::sleep(GRACE);
-            // A file that is being written is finished first.
+            // A file that is being written at once is finished first.
             output::while_nothing_is_written(|| {
                 console.failure(&watched.failure());
                 // Threads of a driver may be running, so nothing is destroyed.

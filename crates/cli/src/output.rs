@@ -77,10 +77,38 @@ fn writing() -> MutexGuard<'static, ()> {
     WRITING.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Runs `act` while no file is being written.
+/// The temporary file of the [`PartialFile`] that is not finished. There is at most one.
+static UNFINISHED: Mutex<Option<PathBuf>> = Mutex::new(None);
+
+fn unfinished() -> MutexGuard<'static, Option<PathBuf>> {
+    UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Runs `act`, which ends the process, while no file is being written. Removes the file that is not
+/// finished.
 pub fn while_nothing_is_written(act: impl FnOnce()) {
     let _writing = writing();
+    if let Some(path) = unfinished().take() {
+        // The process ends anyway.
+        let _ = std::fs::remove_file(path);
+    }
     act();
+}
+
+/// Remembers in [`UNFINISHED`] that there is a file, until this is dropped.
+struct Unfinished;
+
+impl Unfinished {
+    fn new(file: &Replacement) -> Self {
+        *unfinished() = file.temporary_path().map(Path::to_owned);
+        Self
+    }
+}
+
+impl Drop for Unfinished {
+    fn drop(&mut self) {
+        *unfinished() = None;
+    }
 }
 
 /// A file that is written part by part, and gets its name when it is finished.
@@ -88,6 +116,8 @@ pub struct PartialFile {
     path: PathBuf,
     file: Replacement,
     failure: Option<Failure>,
+    // The last field, which is dropped after the file.
+    unfinished: Unfinished,
 }
 
 impl PartialFile {
@@ -97,8 +127,10 @@ impl PartialFile {
     ///
     /// As [`Output::check`].
     pub fn begin(path: &Path) -> Result<Self, Failure> {
+        let _writing = writing();
         let file = Replacement::begin(path).map_err(|e| cannot_write(path, &e))?;
-        Ok(Self { path: path.to_owned(), file, failure: None })
+        let unfinished = Unfinished::new(&file);
+        Ok(Self { path: path.to_owned(), file, failure: None, unfinished })
     }
 
     /// Returns why a part was not written, also if the writer ignored the error.
@@ -113,8 +145,13 @@ impl PartialFile {
     /// The disk is full, now or when a part was written.
     pub fn finish(self) -> Result<(), Failure> {
         let _writing = writing();
-        let finish = || self.file.finish().map_err(|e| cannot_write(&self.path, &e));
-        self.failure.map_or_else(finish, Err)
+        let Self { path, file, failure, unfinished } = self;
+        let finished = match failure {
+            Some(failure) => Err(failure),
+            None => file.finish().map_err(|e| cannot_write(&path, &e)),
+        };
+        drop(unfinished);
+        finished
     }
 
     fn noted<T>(&mut self, written: std::io::Result<T>) -> std::io::Result<T> {
@@ -204,24 +241,29 @@ pub fn json(value: &impl Serialize) -> Result<Vec<u8>, Failure> {
     Ok(bytes)
 }
 
-fn cannot_write(path: &Path, error: &std::io::Error) -> Failure {
+/// Returns the failure of a command that cannot write a file, with advice.
+pub fn cannot_write(path: &Path, error: &std::io::Error) -> Failure {
     Failure::Machine(format!("cannot write {}: {error}{}", path.display(), advice(error)))
 }
 
+/// What to do about a file that cannot be written. Other errors say what they are.
+const ADVICE: [(&[ErrorKind], &str); 4] = [
+    (
+        &[ErrorKind::StorageFull, ErrorKind::QuotaExceeded, ErrorKind::FileTooLarge],
+        "; free space, or write to another disk",
+    ),
+    (
+        &[ErrorKind::PermissionDenied, ErrorKind::ReadOnlyFilesystem],
+        "; choose a folder that you may write to",
+    ),
+    (&[ErrorKind::NotFound, ErrorKind::NotADirectory], "; create its folder, or choose another"),
+    (&[ErrorKind::IsADirectory], "; add the name of a file"),
+];
+
 /// Says what to do about a file that cannot be written.
 fn advice(error: &std::io::Error) -> &'static str {
-    #[allow(clippy::wildcard_enum_match_arm, reason = "other errors say what they are")]
-    match error.kind() {
-        ErrorKind::StorageFull | ErrorKind::QuotaExceeded | ErrorKind::FileTooLarge => {
-            "; free space, or write to another disk"
-        }
-        ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem => {
-            "; choose a folder that you may write to"
-        }
-        ErrorKind::NotFound | ErrorKind::NotADirectory => "; create its folder, or choose another",
-        ErrorKind::IsADirectory => "; add the name of a file",
-        _ => "",
-    }
+    let known = ADVICE.iter().find(|(kinds, _)| kinds.contains(&error.kind()));
+    known.map_or("", |(_, advice)| *advice)
 }
 
 /// Writes to stdout. A closed pipe is not an error: the reader has seen enough.

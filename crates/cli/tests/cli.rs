@@ -140,8 +140,19 @@ fn a_watched_scene_is_drawn_again_when_a_file_changes() {
     next("the scene changed");
     std::fs::write(path("part.sdf"), "let r = 0.25 // smaller\n").unwrap();
     next("the import changed");
-    child.kill().unwrap();
-    child.wait().unwrap();
+    // A file that is missing is watched too.
+    std::fs::write(path("scene.sdf"), "import r from \"later.sdf\"\nsphere(3 * r)\n").unwrap();
+    std::thread::sleep(std::time::Duration::from_millis(500));
+    std::fs::write(path("later.sdf"), "let r = 0.1\n").unwrap();
+    next("the missing import was written");
+    if cfg!(unix) {
+        let interrupted = Command::new("kill").args(["-INT", &child.id().to_string()]).status();
+        assert!(interrupted.unwrap().success());
+        assert_eq!(child.wait().unwrap().code(), Some(130));
+    } else {
+        child.kill().unwrap();
+        child.wait().unwrap();
+    }
 }
 
 #[test]

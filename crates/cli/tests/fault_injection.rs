@@ -57,8 +57,9 @@ const LONG: [&str; 5] = [
     "bake many.sdf -o out.npy --resolution 600",
 ];
 /// Work that begins with a shader for which a software driver takes long.
-const DRIVER: [&str; 2] = [
+const DRIVER: [&str; 3] = [
     "render many.sdf -o out.png --backend gpu --loops never",
+    "render many.sdf -o out.gif --frames 0..3 --backend gpu --loops never",
     "chart many.sdf -o out.svg --no-cache --march sphere",
 ];
 /// The time in which a process has to end: far less than the work takes, and more than a busy

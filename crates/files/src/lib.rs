@@ -17,7 +17,7 @@ mod write;
 
 #[cfg(feature = "pictures")]
 pub use format::{Format, read_picture};
-pub use write::{Replacement, check_writable, write, write_unless_changed};
+pub use write::{Replacement, check_writable, create, write, write_unless_changed};
 
 use std::io::{ErrorKind, Read};
 use std::path::{Path, PathBuf};

@@ -38,6 +38,23 @@ pub fn write_unless_changed(path: &Path, before: &[u8], after: &[u8]) -> std::io
     Ok(true)
 }
 
+/// Writes a new file, completely or not at all.
+///
+/// # Errors
+///
+/// [`ErrorKind::AlreadyExists`] if the path exists, also as a folder or a link; the folder is
+/// missing or not writable, or the disk is full.
+pub fn create(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
+    if std::fs::symlink_metadata(path).is_ok() {
+        return Err(ErrorKind::AlreadyExists.into());
+    }
+    let mut file = temporary(path)?;
+    file.write_all(bytes)?;
+    file.as_file().sync_all()?;
+    file.persist_noclobber(path).map_err(|error| error.error)?;
+    Ok(())
+}
+
 /// A file that is written part by part. It gets its name by [`Self::finish`]; dropped before, it is
 /// deleted, and an existing file stays as it was.
 #[derive(Debug)]
@@ -79,6 +96,15 @@ impl Replacement {
         file.as_file().sync_all()?;
         file.persist(target(&self.path)).map_err(|error| error.error)?;
         Ok(())
+    }
+
+    /// Returns the path of the temporary file; `None` if a device is written to. A process that
+    /// ends without destroying this value removes that file by itself.
+    pub fn temporary_path(&self) -> Option<&Path> {
+        match &self.to {
+            Destination::Temporary(file) => Some(file.path()),
+            Destination::Device(_) => None,
+        }
     }
 
     fn file(&mut self) -> &mut File {
@@ -166,9 +192,25 @@ mod tests {
         let mut file = Replacement::begin(&path).unwrap();
         file.write_all(b"half").unwrap();
         assert_eq!(std::fs::read(&path).unwrap(), b"old");
+        assert!(file.temporary_path().unwrap().exists());
         drop(file);
         assert_eq!(std::fs::read(&path).unwrap(), b"old");
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn a_new_file_replaces_nothing() {
+        let folder = tempfile::tempdir().unwrap();
+        let [file, link, gone] = ["a.sdf", "b.sdf", "c.sdf"].map(|it| folder.path().join(it));
+        create(&file, b"new").unwrap();
+        symlink(&gone, &link).unwrap();
+        for path in [&file, &link, folder.path()] {
+            let error = create(path, b"newer").unwrap_err();
+            assert_eq!(error.kind(), ErrorKind::AlreadyExists, "{}", path.display());
+        }
+        assert_eq!(std::fs::read(&file).unwrap(), b"new");
+        assert!(create(&gone.join("d.sdf"), b"new").is_err());
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 2);
     }
 
     #[test]

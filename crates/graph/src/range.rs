@@ -33,6 +33,11 @@ impl Range {
         self.lo.max(-self.hi).max(0.0)
     }
 
+    /// True if all values are from 0 to 1.
+    pub fn is_fraction(self) -> bool {
+        self.lo >= 0.0 && self.hi <= 1.0
+    }
+
     fn of_const(value: &Const) -> Self {
         let lanes = value.lanes();
         hull(lanes[..value.ty().width()].iter().map(|&lane| Self::new(lane, lane)))
@@ -180,7 +185,7 @@ fn binary(op: Binary, a: Range, b: Range) -> Range {
 
 fn ternary(op: Ternary, [a, b, c]: [Range; 3]) -> Range {
     match op {
-        Ternary::Mix if c.lo >= 0.0 && c.hi <= 1.0 => hull([a, b]),
+        Ternary::Mix if c.is_fraction() => hull([a, b]),
         Ternary::Mix => Range::ALL,
         Ternary::Clamp => a.max(b).min(c),
         Ternary::Smoothstep => Range::new(0.0, 1.0),

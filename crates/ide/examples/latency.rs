@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use sdfc_ide::{Analysis, NoFiles, complete, diagnostics, late_diagnostics};
 
-/// What is typed, one character after the other.
+/// The text that is typed, one character after the other.
 const TYPED: &str = "sphere(1).translate(x: 1)";
 
 /// A union of moved shapes of three kinds.

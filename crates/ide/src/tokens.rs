@@ -132,7 +132,7 @@ impl Names {
         if WORDS.contains(&&text[at.clone()]) {
             return Some((TokenRole::Keyword, false, false));
         }
-        // What is left are components of vectors, and the fields of records and of their types.
+        // Components of vectors are left, and fields of records and of their types.
         let is_field = text[..at.start].trim_end().ends_with('.')
             || text[at.end..].trim_start().starts_with(':');
         is_field.then_some((TokenRole::Property, false, false))

@@ -43,7 +43,7 @@ pub(crate) fn check(
     let reached = library.reached(sources, files.map(|file| sources.text(file)));
     let look = library.look(sources);
     let again = uses.clone();
-    // Who asks about a cursor needs no messages, and the text there is seldom complete.
+    // A question about a cursor needs no messages, and the text is seldom complete then.
     let needs_messages = uses.as_ref().is_none_or(|uses| uses.cursor.is_none());
     let checked = check_items(&reached, look, of_scene, uses);
     if needs_messages && has_errors(&checked.diagnostics) {

@@ -181,6 +181,8 @@ fn colours_are_decoded_to_linear() {
     assert_color("hsv(0, 1, 1)", [1.0, 0.0, 0.0, 1.0]);
     assert_color("hsv(1 / 3, 1, 1)", [0.0, 1.0, 0.0, 1.0]);
     assert_color("hsv(2 / 3, 1, 1)", [0.0, 0.0, 1.0, 1.0]);
+    assert_color("hsv(s: 1, h: 120deg, v: 1)", [0.0, 1.0, 0.0, 1.0]);
+    assert_color("hsl(l: 0.5, s: 1, h: 240deg)", [0.0, 0.0, 1.0, 1.0]);
     assert_color("hsv(0.2, 0, 1)", [1.0, 1.0, 1.0, 1.0]);
     assert_color("hsv(1 / 6, 1, 0.5)", [0.214_041_1, 0.214_041_1, 0.0, 1.0]);
     // Ottosson's own table: the hue and chroma of sRGB red.

@@ -271,13 +271,13 @@ impl<'d> Documents<'d> {
     fn importer(&self, path: &Path) -> Option<PathBuf> {
         let known = self.importers.borrow().get(path).cloned();
         known.unwrap_or_else(|| {
-            let folders = path.ancestors().skip(1).take(1 + MAX_LEVELS);
+            let mut folders = path.ancestors().skip(1).take(1 + MAX_LEVELS);
             let has_importer = |folder: &&Path| {
                 let open = self.open.keys().filter(|it| it.parent() == Some(folder)).cloned();
                 let mut scenes = open.chain(self.disk.scenes_in(folder));
                 scenes.any(|scene| scene != path && self.imports(folder, &scene, path))
             };
-            let found = folders.into_iter().find(has_importer).map(Path::to_owned);
+            let found = folders.find(has_importer).map(Path::to_owned);
             self.importers.borrow_mut().insert(path.to_owned(), found.clone());
             found
         })

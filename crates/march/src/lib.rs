@@ -23,7 +23,7 @@
 //! to `record_sample`. A change of sign counts as a hit, so that a ray that has passed through a
 //! surface does not walk away from it.
 //!
-//! The blocks ([`ViewBlock`], [`PixelBlock`]) match what `view.wgsl` and `pixel.wgsl` declare;
+//! The blocks ([`ViewBlock`], [`PixelBlock`]) match what `view.wgsl` and `pixel_layout.wgsl` declare;
 //! their layout is that of WGSL.
 
 mod blocks;
@@ -39,6 +39,6 @@ pub use blocks::{
 pub use features::Features;
 pub use methods::{Audience, METHODS, Method, MethodDefinition, MethodParameter, UnknownMethod};
 pub use source::{
-    FieldSource, Form, SHADERTOY_HEAD, SHADERTOY_TAIL, culling_source, ray_source, source,
-    source_with,
+    FieldSource, Form, SHADERTOY_HEAD, SHADERTOY_TAIL, culling_source, display_source, ray_source,
+    source, source_with,
 };

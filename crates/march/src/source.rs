@@ -65,7 +65,7 @@ impl Form {
             Self::Normals => &[include_str!("wgsl/normals.wgsl"), BUFFER, COMPUTE],
             Self::Fragment => &[PICTURE, BUFFER, include_str!("wgsl/rows_down.wgsl"), FRAGMENT],
             Self::FragmentUp => &[PICTURE, BUFFER, include_str!("wgsl/rows_up.wgsl"), FRAGMENT],
-            Self::Shadertoy => &[PICTURE, include_str!("wgsl/shadertoy.wgsl")],
+            Self::Shadertoy => &[PICTURE, SRGB, include_str!("wgsl/shadertoy.wgsl")],
         }
     }
 
@@ -79,7 +79,7 @@ impl Form {
             Self::Compute | Self::Normals => &[PICTURE, BUFFER, COMPUTE],
             Self::Fragment => &[PICTURE, BUFFER, include_str!("wgsl/rows_down.wgsl"), FRAGMENT],
             Self::FragmentUp => &[PICTURE, BUFFER, include_str!("wgsl/rows_up.wgsl"), FRAGMENT],
-            Self::Shadertoy => &[PICTURE, include_str!("wgsl/planar_shadertoy.wgsl")],
+            Self::Shadertoy => &[PICTURE, SRGB, include_str!("wgsl/planar_shadertoy.wgsl")],
         }
     }
 }
@@ -127,6 +127,7 @@ pub fn source_with(
         include_str!("wgsl/secondary.wgsl"),
         include_str!("wgsl/background.wgsl"),
         include_str!("wgsl/tone.wgsl"),
+        PIXEL_LAYOUT,
         include_str!("wgsl/pixel.wgsl"),
     ]);
     files.extend(if features.planar { form.planar_files() } else { form.files() });
@@ -161,7 +162,15 @@ pub fn culling_source() -> String {
     files.join("\n")
 }
 
+/// Returns the source of the shader that writes pixels into a texture that a window shows. Its entry
+/// point is `main`, one invocation for each pixel of a tile.
+pub fn display_source() -> String {
+    [PIXEL_LAYOUT, SRGB, include_str!("wgsl/display.wgsl")].join("\n")
+}
+
 const ACTIVE_LAYOUT: &str = include_str!("wgsl/active_layout.wgsl");
+const PIXEL_LAYOUT: &str = include_str!("wgsl/pixel_layout.wgsl");
+const SRGB: &str = include_str!("wgsl/srgb.wgsl");
 const RANGES: &str = include_str!("wgsl/ranges.wgsl");
 const RAY: &str = include_str!("wgsl/ray.wgsl");
 const BRACKET: &str = include_str!("wgsl/bracket.wgsl");

@@ -20,6 +20,8 @@ pub(crate) struct Builder<'a, 'f> {
     pub(crate) tree: &'a Tree,
     pub(crate) signs: &'a Signs,
     pub(crate) error: f64,
+    /// True if paths may have circular arcs.
+    pub(crate) has_arcs: bool,
 }
 
 /// A cell with the loops on its boundary.

@@ -14,7 +14,7 @@ use crate::field::{Field, LocalField};
 use crate::grid::Grid;
 use crate::make::Maker;
 use crate::mesh::{check, fitting};
-use crate::outline::{Lines, Outline};
+use crate::outline::Outline;
 use crate::plane::Plane;
 use crate::polygon::{area, parents};
 use crate::simplify::DIVIDED;
@@ -122,9 +122,8 @@ pub fn contour(
     let grid = fitting(error, |error| Grid::around_flat(shadow, error))?;
     let truth = LocalField::new(field.distance(), frame).in_plane(plane);
     let lowered = truth.clone().at_level(-LEVEL * error);
-    let maker = Maker { field: &lowered, truth: &truth, grid: &grid, error, max_cells };
-    let lines = if has_arcs { Lines::AndArcs } else { Lines::Alone };
-    let (outline, proof) = maker.make::<Outline>(lines, progress)?;
+    let maker = Maker { field: &lowered, truth: &truth, grid: &grid, error, max_cells, has_arcs };
+    let (outline, proof) = maker.make::<Outline>(progress)?;
     let certificate = ContourCertificate::of(proof);
     if outline.paths.is_empty() {
         let [from, to] = plane.range(bounds);

@@ -18,15 +18,8 @@ const ROUNDS: u32 = 4;
 
 /// A surface that is made from the cells of a grid.
 pub(crate) trait Surface: Sized {
-    /// What it is made of.
-    type Style: Copy;
-
     /// Makes the surface.
-    fn build(
-        builder: &Builder<'_, '_>,
-        style: Self::Style,
-        progress: OnProgress<'_>,
-    ) -> Result<Self, MeshError>;
+    fn build(builder: &Builder<'_, '_>, progress: OnProgress<'_>) -> Result<Self, MeshError>;
 
     /// Returns the triangles whose error is proven.
     fn triangles(&self) -> &Mesh;
@@ -36,13 +29,7 @@ pub(crate) trait Surface: Sized {
 }
 
 impl Surface for Mesh {
-    type Style = ();
-
-    fn build(
-        builder: &Builder<'_, '_>,
-        (): Self::Style,
-        progress: OnProgress<'_>,
-    ) -> Result<Self, MeshError> {
+    fn build(builder: &Builder<'_, '_>, progress: OnProgress<'_>) -> Result<Self, MeshError> {
         builder.mesh(progress)
     }
 
@@ -64,13 +51,14 @@ pub(crate) struct Maker<'a> {
     pub(crate) grid: &'a Grid,
     pub(crate) error: f64,
     pub(crate) max_cells: u64,
+    /// True if paths may have circular arcs.
+    pub(crate) has_arcs: bool,
 }
 
 impl Maker<'_> {
     /// Returns the surface and what is proven about it.
     pub(crate) fn make<S: Surface>(
         &self,
-        style: S::Style,
         progress: OnProgress<'_>,
     ) -> Result<(S, Proof), MeshError> {
         let Self { field, grid, error, max_cells, .. } = *self;
@@ -80,7 +68,7 @@ impl Maker<'_> {
         let mut tree = Tree::new(grid.is_flat);
         let mut signs = Signs::default();
         refiner.grow(&mut tree, vec![grid.root()], progress)?;
-        let mut best = self.attempt::<S>(&refiner, &mut tree, &mut signs, style, None, progress)?;
+        let mut best = self.attempt::<S>(&refiner, &mut tree, &mut signs, None, progress)?;
         for _ in 0..ROUNDS {
             let divided = divide(&mut tree, grid, &best.1.undecided);
             if divided.is_empty() {
@@ -89,7 +77,7 @@ impl Maker<'_> {
             refiner.sizes = Sizes::STRICT;
             refiner.grow(&mut tree, divided, progress)?;
             let before = Some(&best);
-            let next = self.attempt(&refiner, &mut tree, &mut signs, style, before, progress)?;
+            let next = self.attempt(&refiner, &mut tree, &mut signs, before, progress)?;
             let volume = |(_, proof): &(S, Proof)| proof.certificate.undecided_volume;
             if volume(&next) >= volume(&best) {
                 break;
@@ -105,14 +93,13 @@ impl Maker<'_> {
         refiner: &Refiner<'_, '_>,
         tree: &mut Tree,
         signs: &mut Signs,
-        style: S::Style,
         before: Option<&(S, Proof)>,
         progress: OnProgress<'_>,
     ) -> Result<(S, Proof), MeshError> {
-        let Self { truth, grid, error, max_cells, .. } = *self;
+        let Self { truth, grid, error, max_cells, has_arcs, .. } = *self;
         refiner.untangle(tree, signs, progress)?;
-        let builder = Builder { prober: refiner.prober, grid, tree, signs, error };
-        let surface = S::build(&builder, style, progress)?;
+        let builder = Builder { prober: refiner.prober, grid, tree, signs, error, has_arcs };
+        let surface = S::build(&builder, progress)?;
         let changes = before.map(|(before, proof)| {
             let mut found = changes(before.triangles(), surface.triangles());
             found.extend(&proof.undecided);

@@ -29,8 +29,9 @@ pub fn mesh(
     check(bounds, error)?;
     let grid = fitting(error, |error| Grid::around(bounds, error))?;
     let local = LocalField::new(field.distance(), frame);
-    let maker = Maker { field: &local, truth: &local, grid: &grid, error, max_cells };
-    let (mut mesh, proof) = maker.make::<Mesh>((), progress)?;
+    let maker =
+        Maker { field: &local, truth: &local, grid: &grid, error, max_cells, has_arcs: false };
+    let (mut mesh, proof) = maker.make::<Mesh>(progress)?;
     if mesh.triangles.is_empty() {
         // Parts that are far smaller than the error look as if faces touched.
         let is_empty = proof.certificate.is_proven && proof.certificate.touching_boxes == 0;
@@ -118,8 +119,15 @@ mod tests {
         let (Some(field), Some(grid)) = (field, grid) else { panic!("a field and its grid") };
         let whole = LocalField::new(field.distance(), &frame);
         let [local, fixed] = [whole.clone(), whole.fixed()].map(|field| {
-            let maker = Maker { field: &field, truth: &field, grid: &grid, error, max_cells };
-            let made = maker.make::<Mesh>((), &mut |_| ControlFlow::Continue(()));
+            let maker = Maker {
+                field: &field,
+                truth: &field,
+                grid: &grid,
+                error,
+                max_cells,
+                has_arcs: false,
+            };
+            let made = maker.make::<Mesh>(&mut |_| ControlFlow::Continue(()));
             made.map(|(mesh, proof)| (mesh, proof.certificate))
         });
         assert!(local.as_ref().is_ok_and(|(mesh, _)| mesh.triangles.len() > 1000));

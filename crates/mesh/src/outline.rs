@@ -14,15 +14,6 @@ use crate::simplify::{DIVIDED, simplified};
 use crate::surface::Mesh;
 use crate::vector::SurfacePoint;
 
-/// What paths are made of.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Lines {
-    /// Lines.
-    Alone,
-    /// Lines and circular arcs.
-    AndArcs,
-}
-
 /// Closed paths that do not cross, and walls on them.
 pub(crate) struct Outline {
     pub(crate) paths: Vec<Curve>,
@@ -32,17 +23,11 @@ pub(crate) struct Outline {
 }
 
 impl Surface for Outline {
-    type Style = Lines;
-
-    fn build(
-        builder: &Builder<'_, '_>,
-        style: Self::Style,
-        progress: OnProgress<'_>,
-    ) -> Result<Self, MeshError> {
+    fn build(builder: &Builder<'_, '_>, progress: OnProgress<'_>) -> Result<Self, MeshError> {
         report(progress, Phase::Placing, 0, 2)?;
         let paths = linked(&builder.chords()).ok_or(MeshError::Open)?;
         report(progress, Phase::Placing, 1, 2)?;
-        let paths = simplified(paths, builder.error, style == Lines::AndArcs);
+        let paths = simplified(paths, builder.error, builder.has_arcs);
         report(progress, Phase::Placing, 2, 2)?;
         let walls = walls(&paths, builder.error);
         Ok(Self { paths, walls })

@@ -3,7 +3,6 @@
 use serde::Serialize;
 
 use crate::surface::Mesh;
-use crate::vector::{cross, dot, sub};
 
 /// A connected part of a closed mesh, without a border. [`Mesh::shells`] finds them.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -18,7 +17,8 @@ pub struct Shell {
     /// True if it is the boundary of a hollow within a solid.
     pub is_cavity: bool,
     /// Number of holes through it, such as 1 for a ring: the genus `g` of Euler's formula
-    /// `vertices - edges + triangles = 2 - 2 g`. `None` if the part is no closed manifold.
+    /// `vertices - edges + triangles = 2 - 2 g`. `None` if no closed surface has
+    /// these numbers of vertices and triangles.
     pub holes: Option<usize>,
     /// Lowest and highest corner of a box around it.
     pub bounds: [[f64; 3]; 2],
@@ -52,10 +52,9 @@ impl Mesh {
             let first = parts.first(triangle[0]) as usize;
             // About a point of the shell, because far from it digits cancel.
             let near = self.vertices[first];
-            let [a, b, c] = self.corners(*triangle).map(|corner| sub(corner, near));
             if let Some(shell) = &mut shells[first] {
                 shell.triangles += 1;
-                shell.volume += dot(a, cross(b, c)) / 6.0;
+                shell.volume += self.volume_from(near, *triangle);
             }
         }
         let mut shells: Vec<Shell> = shells.into_iter().flatten().collect();
@@ -164,7 +163,7 @@ mod tests {
     }
 
     #[test]
-    fn an_open_mesh_has_no_number_of_holes() {
+    fn numbers_of_no_closed_surface_have_no_holes() {
         let mut mesh = cubes(&[[0; 3]]);
         mesh.triangles.pop();
         assert_eq!(mesh.shells()[0].holes, None);

@@ -96,11 +96,13 @@ impl Mesh {
     pub fn volume(&self) -> f64 {
         // About a point near the mesh, because far from it digits cancel.
         let near = self.vertices.first().copied().unwrap_or_default();
-        let part = |triangle: &[u32; 3]| {
-            let [a, b, c] = self.corners(*triangle).map(|corner| sub(corner, near));
-            dot(a, cross(b, c)) / 6.0
-        };
-        total(self.triangles.iter().map(part))
+        total(self.triangles.iter().map(|triangle| self.volume_from(near, *triangle)))
+    }
+
+    /// Returns the volume between a point and a triangle, negative on the outer side of it.
+    pub(crate) fn volume_from(&self, near: [f64; 3], triangle: [u32; 3]) -> f64 {
+        let [a, b, c] = self.corners(triangle).map(|corner| sub(corner, near));
+        dot(a, cross(b, c)) / 6.0
     }
 
     /// Returns the area of all triangles.

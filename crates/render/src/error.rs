@@ -49,6 +49,14 @@ pub enum RenderError {
          {MAX_PIXELS} pixels", .0[0], .0[1]
     )]
     Size([u32; 2]),
+    /// The texture that is to show a picture has another size than the picture.
+    #[error("the texture is {}x{}, but the picture is {}x{}", texture[0], texture[1], picture[0], picture[1])]
+    TextureSize {
+        /// The size of the texture.
+        texture: [u32; 2],
+        /// The size of the picture.
+        picture: [u32; 2],
+    },
     /// The region has no pixels, or reaches beyond the picture.
     #[error(
         "the region {},{},{}x{} is not within the picture of {}x{} pixels",
@@ -131,6 +139,7 @@ impl RenderError {
             | Self::Limit { .. } => true,
             Self::Planar
             | Self::Size(_)
+            | Self::TextureSize { .. }
             | Self::Region { .. }
             | Self::Samples(_)
             | Self::UniformCount { .. }

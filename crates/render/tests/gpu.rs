@@ -126,7 +126,7 @@ fn textures_show_the_same() -> Outcome {
         let shown = testing::read_texture(&gpu, &target)?;
         let shown: Vec<u8> = shown.chunks_exact(4).flat_map(|pixel| &pixel[..3]).copied().collect();
         assert_eq!(shown.len(), copied.len());
-        // The power of the driver may round otherwise.
+        // The driver's `pow` may round differently.
         let far = shown.iter().zip(&copied).filter(|(a, b)| a.abs_diff(**b) > 1).count();
         assert_eq!(far, 0, "{tile_size:?}");
         assert!(copied.iter().any(|byte| *byte > 100));
@@ -134,7 +134,7 @@ fn textures_show_the_same() -> Outcome {
     let other = DeviceTexture::new(&gpu, [8, 8])?;
     let target = (&display, &other);
     let refused = pipeline.show(&view, &uniforms, TileSize::default(), target, &mut no_progress);
-    assert_eq!(refused, Err(RenderError::Size(size)));
+    assert_eq!(refused, Err(RenderError::TextureSize { texture: [8, 8], picture: size }));
     Ok(())
 }
 

@@ -238,7 +238,7 @@ impl<'r> Compiler<'r> {
             Err(errors) => {
                 // The values may fix what the defaults break.
                 let values = parse_values(&self.declared_params(name, text), set);
-                let values = values.ok().filter(|values| !values.is_empty()).ok_or(errors)?;
+                let values = values.map_err(|_| errors)?;
                 (self.values(&values).compile(name, text)?, values)
             }
         };

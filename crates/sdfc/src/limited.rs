@@ -16,8 +16,8 @@ use crate::derived_bounds::{Corners, DerivedBounds, corners_of};
 use crate::error::Error;
 use crate::scene::Scene;
 
-/// What is meshed, cut, measured and sampled: the scene, without solids or regions that have no
-/// limit.
+/// The scene without solids or regions that have no limit. It is what meshes, contours,
+/// measurements and grids are made of.
 pub(crate) struct Limited<'a> {
     pub(crate) program: Cow<'a, Program>,
     pub(crate) bounds: Corners,

@@ -125,8 +125,7 @@ impl Scene {
     ///
     /// [`ParamError`], except [`ParamError::Fixed`].
     pub fn param_value(&self, name: &str, text: &str) -> Result<[f64; 4], ParamError> {
-        let (_, param) = find(self.params(), name)?;
-        value(param, text)
+        parsed(self.params(), name, text)
     }
 
     /// True if a param decides what the scene consists of: a count, the length of a list, a string.
@@ -263,11 +262,13 @@ pub(crate) fn parse_values(
     params: &[Param],
     set: &[(&str, &str)],
 ) -> Result<CompileValues, ParamError> {
-    let one = |(name, text): &(&str, &str)| {
-        let (_, param) = find(params, name)?;
-        Ok(((*name).to_owned(), value(param, text)?))
-    };
+    let one = |(name, text): &(&str, &str)| Ok(((*name).to_owned(), parsed(params, name, text)?));
     set.iter().map(one).collect()
+}
+
+fn parsed(params: &[Param], name: &str, text: &str) -> Result<[f64; 4], ParamError> {
+    let (_, param) = find(params, name)?;
+    value(param, text)
 }
 
 /// Parses the value of a param.

@@ -209,7 +209,7 @@ pub struct Picture {
 /// The time of a tile after the device was lost: a fourth of the usual time.
 const SMALL_TILE_MS: f64 = 15.0;
 /// What a picture says if the device was lost once.
-const AGAIN: &str = "the device was lost once, and drew again in smaller tiles";
+const AGAIN: &str = "the device was lost once, and the picture was drawn again in smaller tiles";
 
 impl Scene {
     /// Draws the scene. `progress` is called repeatedly and may cancel.

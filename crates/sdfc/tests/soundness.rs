@@ -19,6 +19,12 @@ const ROUNDING: f64 = 1e-6;
 const SCENES: &[(&str, &str)] = &[
     ("twisted box", "box([0.6, 2, 0.6]).twist(120deg)"),
     ("twisted off the axis", "box([0.4, 2, 0.4]).translate(x: 0.5).twist(200deg)"),
+    (
+        "a constant from bounds, of a shape that is made in the clause",
+        "solid same(a: solid) lipschitz 1 = a(p)\n\
+         solid bent(a: solid) lipschitz bounds(a.same()).hi.x + 2 bounds bounds(a) =\n  \
+         a([p.x + 0.1 * sin(p.x * p.y), p.y, p.z])\nbent(sphere(1))",
+    ),
     ("twist by a param", "param t = 90deg in 0deg..180deg\nbox([0.6, 2, 0.6]).twist(t)"),
     ("twist under hard union", "box([0.6, 2, 0.6]).twist(120deg) | sphere(0.5).translate(x: 1)"),
     ("twist cut out", "sphere(1.2) - box([0.6, 4, 0.6]).twist(120deg)"),
@@ -188,6 +194,12 @@ const LURES: &[(&str, &str)] = &[
     (
         "a step whose edges may meet",
         "param k = 0.5 in -0.5..0.5\nheightfield(fn(q) = smoothstep(0, k, q.x))",
+    ),
+    ("a step whose edges move", "heightfield(fn(q) = smoothstep(q.y, q.y + 0.5, q.x))"),
+    (
+        "a mixture of vectors, lane by lane",
+        "solid odd(t: vec3)\n bounds -1 .. 1\n = length(mix([p.x, 0, 0.001], [0, p.x, 0.001], t)) - 0.3\n\
+         repeat(fn(c) = odd(step(0.5, hash3(1, c))), spacing: 3)",
     ),
     (
         "a constant from bounds that is less than 1",

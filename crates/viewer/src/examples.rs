@@ -118,6 +118,8 @@ mod tests {
         let scenes = paths.filter(|path| path.extension().is_some_and(|it| it == "sdf"));
         let mut names: Vec<_> =
             scenes.map(|path| path.file_stem().unwrap().to_string_lossy().into_owned()).collect();
+        // The scene that sdfc new writes is no example of one feature.
+        names.retain(|name| name != "new");
         names.sort();
         let (first, others) = EXAMPLES.split_first().unwrap();
         assert_eq!(names, others.iter().map(|example| example.name).collect::<Vec<_>>());

@@ -12,7 +12,7 @@ use sdfc_fuzz::catalogue::Catalogue;
 use sdfc_fuzz::oracles::{GROUPS, ORACLES, Oracle};
 use sdfc_fuzz::table::{Found, Judged, Table};
 use sdfc_fuzz::texts::oracles::{TEXT_ORACLES, TextOracle};
-use sdfc_fuzz::workers::{RUNNING, Worker};
+use sdfc_fuzz::workers::{RUNNING, Worker, first_line};
 use sdfc_fuzz::{campaign, generate, repair, texts, workers};
 
 /// Generates programs and tests what must hold of each. Ends with status 1 if something does not.
@@ -113,7 +113,10 @@ fn named<O: Copy>(
 ) -> Result<Vec<O>, String> {
     let group = |name: &str| GROUPS.iter().find(|group| group.0 == name).map(|group| group.1);
     let known: Vec<&str> = oracles.iter().map(name_of).collect();
-    let is_known = |name: &&String| known.contains(&name.as_str()) || group(name).is_some();
+    let is_known = |name: &&String| {
+        let has_some = |of: &[&str]| of.iter().any(|it| known.contains(it));
+        known.contains(&name.as_str()) || group(name).is_some_and(has_some)
+    };
     if let Some(name) = names.iter().find(|name| !is_known(name)) {
         return Err(format!("there is no oracle `{name}`; there are {}", known.join(", ")));
     }
@@ -177,7 +180,7 @@ fn work(arguments: &Arguments, stride: u64) -> Result<ExitCode, String> {
     let mut on = |event: &Event<'_>| match event {
         Event::Program(seed, text) => {
             // Without the file, a program that ends the process is known by its seed alone.
-            let _ = std::fs::write(&running, format!("// seed {seed}\n{text}"));
+            let _ = std::fs::write(&running, first_line(*seed) + text);
         }
         Event::Judged(judged) => {
             if let Ok(line) = serde_json::to_string(judged) {

@@ -118,10 +118,17 @@ fn started(limits: Limits, worker: &Worker, folder: &Path) -> std::io::Result<Ch
 
 /// The finding of a seed whose process ended.
 fn ended(seed: u64, status: ExitStatus, folder: &Path) -> Judged {
-    let text = std::fs::read_to_string(folder.join(RUNNING)).unwrap_or_default();
+    let text = std::fs::read_to_string(folder.join(RUNNING)).ok();
+    // The process may have ended before it wrote the program of this seed.
+    let text = text.filter(|text| text.starts_with(&first_line(seed))).unwrap_or_default();
     let finding = Finding { kind: "ended".to_owned(), message: status.to_string() };
     Judged { seed, found: vec![found(PROCESS, seed, finding, text)], ..Judged::default() }
 }
 
 /// The file with the program that is judged.
 pub const RUNNING: &str = "running.sdf";
+
+/// Returns the first line of that file.
+pub fn first_line(seed: u64) -> String {
+    format!("// seed {seed}\n")
+}

@@ -351,8 +351,7 @@ impl Slopes {
     fn varying_mix(&self, graph: &mut Graph, [a, b, t]: [NodeId; 3]) -> Constant {
         let (from, to, share) = (graph.range(a), graph.range(b), graph.range(t));
         let apart = (to.hi - from.lo).max(from.hi - to.lo);
-        let is_share = share.lo >= 0.0 && share.hi <= 1.0;
-        if !is_share || !apart.is_finite() || graph.ty(a).width() != 1 {
+        if !share.is_fraction() || !apart.is_finite() || graph.ty(a).width() != 1 {
             return Err(Reason::Unbounded("mix"));
         }
         let (x, y, z) = (self.constant(a)?, self.constant(b)?, self.constant(t)?);
@@ -361,10 +360,12 @@ impl Slopes {
         Ok(graph.add(moved, turned))
     }
 
-    /// The slope of `smoothstep` is at most 3 / 2 in the middle between two fixed edges.
+    /// The slope of `smoothstep` between two fixed edges is at most 3 / 2, divided by their distance.
     fn smoothstep(&self, graph: &mut Graph, [lo, hi, x]: [NodeId; 3]) -> Constant {
+        // The edges themselves, because their distance may be fixed where both move.
+        let moves = graph.stage(lo) == Stage::Point || graph.stage(hi) == Stage::Point;
         let width = graph.sub(hi, lo);
-        if graph.stage(width) == Stage::Point || graph.range(width).nearest_to_zero() <= 0.0 {
+        if moves || graph.range(width).nearest_to_zero() <= 0.0 {
             return Err(Reason::Unbounded("smoothstep"));
         }
         let steepest = graph.number(1.5);
@@ -400,17 +401,18 @@ impl Slopes {
     }
 
     /// `mix(a, b, t)`: |1 - t| La + |t| Lb for a t that does not depend on any point. For a t from
-    /// 0 to 1 that depends only on enclosing formulas, it is the larger one of La and Lb.
+    /// 0 to 1 that depends only on enclosing formulas, it is the larger one of La and Lb, or their
+    /// hypotenuse if the lanes of t may differ.
     fn mixture(&self, graph: &mut Graph, [a, b]: [NodeId; 2], t: NodeId) -> Constant {
         let varies = graph.stage(t) == Stage::Point;
-        let range = graph.range(t);
-        let is_fraction = range.lo >= 0.0 && range.hi <= 1.0;
-        if varies && !(self.is_fixed(graph, t) && is_fraction) {
+        if varies && !(self.is_fixed(graph, t) && graph.range(t).is_fraction()) {
             return self.varying_mix(graph, [a, b, t]);
         }
         let (x, y) = (self.constant(a)?, self.constant(b)?);
         if varies {
-            return Ok(graph.max(x, y));
+            // Lanes that differ in t may take from both.
+            let is_one = graph.ty(t).width() == 1 || matches!(graph.node(t), Node::Splat(..));
+            return Ok(if is_one { graph.max(x, y) } else { hypotenuse(graph, &[x, y]) });
         }
         let one = graph.number(1.0);
         let rest = graph.sub(one, t);

@@ -34,8 +34,8 @@ pub struct LipschitzViolation {
 }
 
 /// Searches for two points that refute the annotation of a function, of which `value` is the
-/// result. It takes at most about so many scalar operations. Calls in loops, and in shapes whose
-/// arguments depend on a point, are skipped.
+/// result. It takes about `operations` scalar operations at most. Calls in loops, and in shapes
+/// whose arguments depend on a point, are skipped.
 pub fn refute_lipschitz(
     scene: &Scene,
     value: NodeId,

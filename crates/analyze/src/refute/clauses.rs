@@ -67,8 +67,8 @@ pub enum Clause {
 }
 
 /// Searches for points at which clauses of the shapes fail, and returns at most one for each shape.
-/// It takes about ten thousand evaluations for each shape, or fewer: `operations` is about how many
-/// scalar operations all of them may take. Shapes whose arguments depend on a point, and fields
+/// It takes about ten thousand evaluations for each shape, but no more than about `operations` scalar
+/// operations in total. Shapes whose arguments depend on a point, and fields
 /// that do not expand, are skipped.
 pub fn refute(scene: &Scene, shapes: &[ShapeId], operations: u64) -> Vec<Violation> {
     let is_fixed = |&&shape: &&ShapeId| scene.graph.shape(shape).level == 0;

@@ -1,11 +1,11 @@
 //! `sdfc new`: a scene to start from.
 
-use std::fs::File;
-use std::io::{ErrorKind, Write};
+use std::io::ErrorKind;
 
 use crate::args::New;
 use crate::console::Console;
 use crate::failure::Failure;
+use crate::output;
 
 /// Writes the scene, and prints what to do with it.
 ///
@@ -18,16 +18,13 @@ pub fn run(args: &New, console: &Console) -> Result<(), Failure> {
         path.set_extension("sdf");
     }
     let name = path.display();
-    let file = File::options().write(true).create_new(true).open(&path);
-    let mut file = file.map_err(|error| {
+    sdfc_files::create(&path, sdfc_examples::NEW.as_bytes()).map_err(|error| {
         if error.kind() == ErrorKind::AlreadyExists {
             Failure::Call(format!("{name} exists; choose another name"))
         } else {
-            Failure::Machine(format!("cannot write {name}: {error}"))
+            output::cannot_write(&path, &error)
         }
     })?;
-    file.write_all(sdfc_examples::NEW.as_bytes())
-        .map_err(|error| Failure::Machine(format!("cannot write {name}: {error}")))?;
     console.note(&format!(
         "{name}: a scene to start from\n  sdfc view {name}            a window that follows each save\n  \
          sdfc render {name} --watch  a picture that follows each save"

@@ -35,8 +35,10 @@ const MAX_GIF_RATE: f64 = 50.0;
 /// the outputs and the scene are the same file; with `--strict`, a part of the picture is unproven;
 /// the machine cannot draw or write; Ctrl-C.
 pub fn run(args: &Render, console: &Console) -> Result<(), Failure> {
-    let interrupt = Interrupt::watch("stopped; no picture was written", console);
-    if args.watch { watch::run(args, &interrupt, console) } else { once(args, &interrupt, console) }
+    if args.watch {
+        return watch::run(args, console);
+    }
+    once(args, &Interrupt::watch("stopped; no picture was written", console), console)
 }
 
 fn once(args: &Render, interrupt: &Interrupt, console: &Console) -> Result<(), Failure> {
@@ -263,6 +265,7 @@ impl<'a> Job<'a> {
         let progress = self.console.progress("drawing");
         let (mut said, mut skipped, mut last) = (false, 0, None);
         for (number, before) in frames.numbers().zip(0..) {
+            self.say_finished(before, frames);
             let time = sequence::time(number, self.args.fps);
             let drawing = self.drawing.at_frame(number, time).in_region(outputs.region);
             let position = [before + 1, frames.count()];
@@ -412,6 +415,7 @@ impl<'a> Job<'a> {
         let mut animation = Animation::new(file).map_err(refused)?;
         let (mut last, mut said) = (None, false);
         for (number, before) in frames.numbers().zip(0..) {
+            self.say_finished(before, frames);
             let picture = self.frame(number, &progress, [before, frames.count()])?;
             self.warn_once(&picture, number, &mut said);
             let shown = sequence::hundredths(number, self.args.fps);
@@ -428,6 +432,12 @@ impl<'a> Job<'a> {
         Ok(last)
     }
 
+    /// Lets Ctrl-C say from now on how many frames are finished.
+    fn say_finished(&self, finished: u32, frames: Frames) {
+        let all = frames.count();
+        self.interrupt.set_message(format!("stopped after {finished} of {all} frames"));
+    }
+
     /// Draws one frame of a sequence. `position` is how many come before it, and how many there
     /// are.
     fn frame(
@@ -438,8 +448,6 @@ impl<'a> Job<'a> {
     ) -> Result<Picture, Failure> {
         let time = sequence::time(number, self.args.fps);
         let values = FrameValues { time, frame: f64::from(number), ..self.values.clone() };
-        let [before, all] = position;
-        self.interrupt.set_message(format!("stopped after {before} of {all} frames"));
         self.paint(&values, 1, progress, position)
     }
 

@@ -224,11 +224,6 @@ impl<'a> Recorded<'a> {
         sha256(lines.as_bytes())
     }
 
-    /// The paths of the files that were read, relative to the folder.
-    pub fn paths(&self) -> Vec<String> {
-        self.files.borrow().keys().cloned().collect()
-    }
-
     fn record(&self, path: &str, bytes: &[u8]) {
         self.files.borrow_mut().insert(path.to_owned(), sha256(bytes));
     }

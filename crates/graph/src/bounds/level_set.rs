@@ -88,8 +88,8 @@ impl Deriver<'_> {
                     yes.hull(self.graph, no).loose()
                 }
             }
-            // Between two values neither of which reaches the limit.
-            Node::Ternary(Ternary::Mix, [a, b, t]) if self.is_fraction(t) => {
+            // A mixture reaches the limit only where one of its two values does.
+            Node::Ternary(Ternary::Mix, [a, b, t]) if self.graph.range(t).is_fraction() => {
                 let a = self.zone(Query { node: a, ..query });
                 let b = self.zone(Query { node: b, ..query });
                 a.hull(self.graph, b).loose()
@@ -114,12 +114,6 @@ impl Deriver<'_> {
             | Node::Element(..)
             | Node::MaterialAt(..) => self.opaque(query),
         }
-    }
-
-    /// True if a value is from 0 to 1 everywhere.
-    fn is_fraction(&self, t: NodeId) -> bool {
-        let range = self.graph.range(t);
-        range.lo >= 0.0 && range.hi <= 1.0
     }
 
     fn binary(&mut self, query: Query, op: Binary, a: NodeId, b: NodeId) -> Zone {

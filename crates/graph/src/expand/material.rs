@@ -34,7 +34,7 @@ pub(super) struct Material {
     pub(super) chains: Vec<MaterialChain>,
 }
 
-/// A shape's material over its own point.
+/// Returns the material of a shape over its own point.
 pub(super) fn formulas(graph: &mut Graph, shape: ShapeId) -> Material {
     let without_chains = |fields| Material { fields, chains: Vec::new() };
     let rule = match graph.shape(shape).material {

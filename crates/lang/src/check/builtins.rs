@@ -328,13 +328,7 @@ impl<'a> Checker<'a> {
     /// Checks `m.with(color: c)` of a material, or `r.with(name: a)` of a record.
     fn with(&mut self, callee: Callee, mut given: Vec<Given<'a>>) -> Expr {
         let first = given.first_mut().filter(|given| given.name.is_none());
-        if let Some(first) = first
-            && let Value::Expr(e) = first.value
-        {
-            *first = Given::done(self.infer(e));
-        }
-        let ty = given.first().and_then(Given::done_type);
-        if let Some(Type::Record(fields)) = ty.cloned() {
+        if let Some(Type::Record(fields)) = first.map(|first| self.look_at(first)) {
             return self.changed(callee, &fields, given);
         }
         let mut parameters = vec![parameter("material", Type::Material, false)];
@@ -380,22 +374,22 @@ impl<'a> Checker<'a> {
         function: Kernel,
         mut given: Vec<Given<'a>>,
     ) -> (Option<(LocalId, Expr)>, Vec<Given<'a>>) {
-        let is_first = |given: &Given| given.name.is_none_or(|name| name.text == "h");
-        let Some(first) = given.first_mut().filter(|given| is_first(given)) else {
-            return (None, given);
-        };
-        let Value::Expr(e) = first.value else { return (None, given) };
         if function == Kernel::Oklch {
             return (None, given);
         }
+        let is_first = |given: &Given| given.name.is_none_or(|name| name.text == "h");
+        let Some(at) = given.iter().position(is_first) else { return (None, given) };
+        let (Value::Expr(e), name) = (given[at].value.clone(), given[at].name) else {
+            return (None, given);
+        };
         let value = self.infer(e);
-        if value.ty == Type::Vec(3) && first.name.is_none() {
+        if value.ty == Type::Vec(3) && name.is_none() {
             let (local, mention) = self.name_value(&value);
             let component = |at| {
                 let kind = ExprKind::Swizzle(Box::new(mention.clone()), vec![at]);
                 Given::done(Expr { kind, ty: Type::Number, span: value.span })
             };
-            given.splice(..1, [0, 1, 2].map(component));
+            given.splice(at..=at, [0, 1, 2].map(component));
             return (Some((local, value)), given);
         }
         let value = if value.ty == Type::Angle && matches!(function, Kernel::Hsv | Kernel::Hsl) {
@@ -405,7 +399,7 @@ impl<'a> Checker<'a> {
         } else {
             value
         };
-        *first = Given { name: first.name, ..Given::done(value) };
+        given[at] = Given { name, ..Given::done(value) };
         (None, given)
     }
 }

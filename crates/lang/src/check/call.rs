@@ -86,7 +86,7 @@ impl<'a> Checker<'a> {
                 let given: Vec<_> = std::iter::once(Given::plain(base)).chain(given).collect();
                 match self.look_up(callee.name) {
                     Some(_) => self.call_name(callee, given),
-                    None => self.unknown_method(callee, base, given),
+                    None => self.unknown_method(callee, given),
                 }
             }
             _ => {
@@ -97,21 +97,16 @@ impl<'a> Checker<'a> {
     }
 
     /// Reports `x.f(...)` if nothing is called f. It may be a field of the record x.
-    fn unknown_method(
-        &mut self,
-        callee: Callee,
-        base: &'a ast::Expr,
-        mut given: Vec<Given<'a>>,
-    ) -> Expr {
-        let value = self.infer(base);
-        let is_field = matches!(&value.ty, Type::Record(fields)
+    fn unknown_method(&mut self, callee: Callee, mut given: Vec<Given<'a>>) -> Expr {
+        let base = given[0].span;
+        let ty = self.look_at(&mut given[0]);
+        let is_field = matches!(&ty, Type::Record(fields)
             if fields.iter().any(|(name, _)| name == callee.name));
-        given[0] = Given::done(value);
         if is_field {
             let message = format!("`{}` is a field of this record, not a function", callee.name);
             let found = Diagnostic::error(Code::WRONG_CALL, callee.at, message);
             let help = format!("to call the value of the field, write (a.{})(...)", callee.name);
-            let (before, after) = (base.span.before(), callee.at.after());
+            let (before, after) = (base.before(), callee.at.after());
             let edits = vec![(before, "(".to_owned()), (after, ")".to_owned())];
             self.report(found.help(help).fix_all("put the field in brackets", edits));
         } else {

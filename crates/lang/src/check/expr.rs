@@ -5,6 +5,7 @@ use sdfc_syntax::ast::{self, ExprKind as Ast, Name, Unit};
 
 use super::builtins::FIELDS;
 use super::coerce::Role;
+use super::records::fields_of;
 use super::types::{self, describe, lanes};
 use super::{Checker, lambda, poison};
 use crate::hir::{Expr, ExprKind, Type};
@@ -175,9 +176,7 @@ impl<'a> Checker<'a> {
                 &"rgba"[..usize::from(lanes(ty).unwrap_or(4)).min(4)]
             )),
             (_, Type::Range(_)) => found.help("a range has .lo and .hi"),
-            (_, Type::Material) => {
-                found.help("its fields are color, roughness, metallic, emission and occlusion")
-            }
+            (_, Type::Material) => fields_of(FIELDS.iter().map(|(name, ..)| *name), name, found),
             (_, _) => found,
         };
         self.report(found);

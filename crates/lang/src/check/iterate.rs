@@ -6,7 +6,6 @@ use super::builtins::{kernel, parameter};
 use super::call::{Callee, Given, Value, is_lambda};
 use super::coerce::Role;
 use super::lambda::arity_of;
-use super::operators::as_type;
 use super::types::{self, describe, is_scalar};
 use super::{Checker, poison};
 use crate::hir::{Element, Expr, Kernel, Type};
@@ -98,8 +97,6 @@ impl<'a> Checker<'a> {
     /// Checks the state of a loop: a number, a bool, a vector, or a record of these.
     fn as_state(&mut self, value: Expr, callee: Callee) -> Expr {
         match state_of(&value.ty) {
-            Some(ty) if ty == value.ty => value,
-            Some(ty) if is_scalar(&ty) => as_type(value, &ty),
             Some(ty) => self.coerce(value, &ty, Role::The("the state")),
             None => {
                 let message = format!(

@@ -291,8 +291,8 @@ fn two_dimensions(a: &ast::Decl, b: &ast::Decl) -> bool {
     kinds && first_dimension(a).is_some() && first_dimension(a) != first_dimension(b)
 }
 
-/// The dimension of the first parameter: that of the shape that it is or makes; for a `fn`, that of
-/// the point that it is.
+/// The dimension of a declaration's first parameter. In a `fn` only a point has one; elsewhere, a
+/// shape, and a type that contains or makes a shape.
 pub(super) fn first_dimension(decl: &ast::Decl) -> Option<Dim> {
     fn of(ty: &ast::TypeExpr) -> Option<Dim> {
         match &ty.kind {

@@ -138,8 +138,8 @@ impl<'a> Checker<'a> {
             return Picked::Nothing;
         }
         let dim = match kind {
-            DeclKind::Fn => types::dimension_of_point(&ty),
-            DeclKind::Solid | DeclKind::Region | DeclKind::Shape => None,
+            DeclKind::Fn | DeclKind::Shape if kernel.is_none() => types::dimension_of_point(&ty),
+            DeclKind::Fn | DeclKind::Shape | DeclKind::Solid | DeclKind::Region => None,
         };
         match (types::dimension(&ty).or(dim), kernel) {
             (None, Some(builtin)) => Picked::Kernel(builtin),
@@ -151,7 +151,7 @@ impl<'a> Checker<'a> {
     }
 
     /// Checks an argument without an expected type and returns its type.
-    fn look_at(&mut self, given: &mut Given<'a>) -> Type {
+    pub(super) fn look_at(&mut self, given: &mut Given<'a>) -> Type {
         let (element, ty) = match &given.value {
             Value::Expr(e) => {
                 let value = self.infer(e);

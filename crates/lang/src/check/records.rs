@@ -3,6 +3,7 @@
 //! The type of a record is the names and types of its fields. Two records with the same names have
 //! compatible types, whatever the order: a conversion reorders the fields.
 
+use rustc_hash::FxHashMap;
 use sdfc_diagnostics::{Code, Diagnostic, Span};
 use sdfc_syntax::ast::{self, Name};
 
@@ -22,7 +23,7 @@ impl<'a> Checker<'a> {
     pub(super) fn infer_record(&mut self, fields: &'a [ast::Field], span: Span) -> Expr {
         self.refuse_repeated(fields.iter().map(|field| &field.name));
         let mut values: Vec<Expr> = fields.iter().map(|field| self.infer(&field.value)).collect();
-        // As for a parameter with a default, a whole literal does not make an int.
+        // A whole literal makes a number. An index or a count stays an int.
         for value in values.iter_mut().filter(|value| literal(value).is_some()) {
             if value.ty == Type::Int {
                 value.ty = Type::Number;
@@ -63,7 +64,7 @@ impl<'a> Checker<'a> {
         if let Some(name) = unknown {
             let message = format!("{}; it has no field `{}`", wanted(), name.text);
             let found = Diagnostic::error(Code::TYPE_MISMATCH, name.span, message);
-            self.report(fields_of(want, name, found));
+            self.report(fields_of(names_of(want), name, found));
             return poison(span);
         }
         if let Some(((name, _), _)) = missing {
@@ -83,13 +84,13 @@ impl<'a> Checker<'a> {
     }
 
     /// Reports a field that occurs twice.
-    fn refuse_repeated<'n>(&mut self, names: impl Iterator<Item = &'n Name> + Clone) {
-        for (at, name) in names.clone().enumerate() {
-            let mut earlier = names.clone().take(at);
-            if let Some(first) = earlier.find(|other| other.text == name.text) {
+    fn refuse_repeated<'n>(&mut self, names: impl Iterator<Item = &'n Name>) {
+        let mut seen: FxHashMap<&str, Span> = FxHashMap::default();
+        for name in names {
+            if let Some(first) = seen.insert(&name.text, name.span) {
                 let message = format!("two fields are called `{}`", name.text);
                 let found = Diagnostic::error(Code::DECLARED_TWICE, name.span, message);
-                self.report(found.note_at(first.span, "the first one"));
+                self.report(found.note_at(first, "the first one"));
             }
         }
     }
@@ -116,7 +117,7 @@ impl<'a> Checker<'a> {
     fn no_such_field(&mut self, of: &Fields, name: &Name) {
         let message = format!("this record has no field `{}`", name.text);
         let found = Diagnostic::error(Code::NO_FIELD, name.span, message);
-        self.report(fields_of(of, name, found));
+        self.report(fields_of(names_of(of), name, found));
     }
 
     /// Converts a record to a type with the same fields, in that type's order.
@@ -172,12 +173,19 @@ impl<'a> Checker<'a> {
 }
 
 /// Adds the field that the name was probably meant to be, or all fields.
-fn fields_of(of: &Fields, name: &Name, found: Diagnostic) -> Diagnostic {
-    let names = || of.iter().map(|(name, _)| name.as_str());
-    match nearest(&name.text, names()) {
+pub(super) fn fields_of<'n>(
+    names: impl Iterator<Item = &'n str> + Clone,
+    name: &Name,
+    found: Diagnostic,
+) -> Diagnostic {
+    match nearest(&name.text, names.clone()) {
         Some(near) => ask(near).add_to(found),
-        None => found.help(format!("its fields are {}", names().collect::<Vec<_>>().join(", "))),
+        None => found.help(format!("its fields are {}", names.collect::<Vec<_>>().join(", "))),
     }
+}
+
+fn names_of(of: &Fields) -> impl Iterator<Item = &str> + Clone {
+    of.iter().map(|(name, _)| name.as_str())
 }
 
 /// The field of a record with an index.

@@ -260,8 +260,7 @@ impl<'p> Elaborator<'p> {
         requires: &'p [Require],
     ) -> Outcome<()> {
         for require in requires {
-            self.last_bounds = None;
-            let condition = self.number(env, &require.condition)?;
+            let (condition, bounds) = self.with_bounds(|it| it.number(env, &require.condition))?;
             self.constrains(condition);
             let Some(found) = self.refute(condition) else {
                 continue;
@@ -271,7 +270,7 @@ impl<'p> Elaborator<'p> {
             for (input, at) in &found.inputs {
                 error = error.note(format!("this happens if {input} is {}", show_number(*at)));
             }
-            if let Some(bounds) = self.last_bounds {
+            if let Some(bounds) = bounds {
                 error = error.note(self.show_bounds(bounds, &found));
             }
             return Err(self.report(error.note_at(require.span, "required here")));
@@ -279,7 +278,7 @@ impl<'p> Elaborator<'p> {
         Ok(())
     }
 
-    /// What is known of the bounds that a requirement is about.
+    /// A note with the bounds that a requirement is about.
     fn show_bounds(&self, bounds: [NodeId; 2], found: &super::probe::Refutation) -> String {
         let [lo, hi] = bounds.map(|end| self.value_at(end, found).unwrap_or_default());
         let is_known = |end: &[f64]| !end.is_empty() && end.iter().all(|lane| lane.is_finite());

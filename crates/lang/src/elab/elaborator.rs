@@ -114,9 +114,7 @@ pub(super) struct Elaborator<'p> {
     pub(super) missing: Option<Span>,
     /// The part of a declaration that is being evaluated.
     pub(super) within: Within,
-    /// True if `bounds(a)` was used since this was last set to false.
-    pub(super) used_bounds: bool,
-    /// The last value of `bounds(a)`, since this was last set to `None`.
+    /// The last value of `bounds(a)` in the step that `with_bounds` runs.
     pub(super) last_bounds: Option<[NodeId; 2]>,
     /// Instances with the clause `intersect`, by definition.
     pub(super) intersections: BTreeMap<hir::ShapeDefId, PendingIntersections<'p>>,
@@ -164,7 +162,6 @@ impl<'p> Elaborator<'p> {
             stopped: false,
             missing: None,
             within: Within::Formula,
-            used_bounds: false,
             last_bounds: None,
             intersections: BTreeMap::new(),
             literals: LiteralUses::new(inputs.first_literal),

@@ -174,12 +174,11 @@ impl<'p> Elaborator<'p> {
             self.promise(env, promise, &mut contract)?;
         }
         if let Some(stated) = &definition.lipschitz {
-            self.used_bounds = false;
-            let constant = self.stated_constant(env, stated)?;
+            let (constant, bounds) = self.with_bounds(|it| it.stated_constant(env, stated))?;
             contract.lipschitz = Some(constant).filter(|&node| self.is_early(node));
             contract.everywhere = definition.everywhere;
             let steep = self.graph.as_number(constant).is_none_or(|constant| constant > 1.0);
-            contract.is_local = self.used_bounds && !definition.everywhere;
+            contract.is_local = bounds.is_some() && !definition.everywhere;
             contract.is_extended = contract.is_local && steep;
         }
         contract.copies = definition.copies.is_some();

@@ -43,10 +43,21 @@ impl<'p> Elaborator<'p> {
         Ok(Value::Node(self.graph.number(length)))
     }
 
+    /// Runs a step. Returns the last value of `bounds(a)` in it too, if there was one.
+    pub(super) fn with_bounds<T>(
+        &mut self,
+        step: impl FnOnce(&mut Self) -> Outcome<T>,
+    ) -> Outcome<(T, Option<[NodeId; 2]>)> {
+        let outer = self.last_bounds.take();
+        let result = step(self);
+        let bounds = self.last_bounds;
+        self.last_bounds = bounds.or(outer);
+        Ok((result?, bounds))
+    }
+
     /// `bounds(a)`: the bounds that the graph knows for a shape, or for all shapes that a function
     /// makes.
     pub(super) fn bounds(&mut self, env: &mut Env<'p>, at: Application<'p>) -> Outcome<Value<'p>> {
-        self.used_bounds = true;
         let over = at.args.first().ok_or(Poison)?;
         match self.eval(env, over)? {
             Value::Shape(shape) => Ok(self.known_bounds(shape)),

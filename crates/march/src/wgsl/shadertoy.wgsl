@@ -82,12 +82,6 @@ fn load_headlight() {
     view.lights[0].position = -view.forward;
 }
 
-// The sRGB transfer function (IEC 61966-2-1).
-fn srgb(linear: vec3f) -> vec3f {
-    let light = saturate(linear);
-    return select(1.055 * pow(light, vec3f(1.0 / 2.4)) - 0.055, 12.92 * light, light <= vec3f(0.0031308));
-}
-
 // The colour at a position in pixels from the picture's lower left. The mouse orbits the camera
 // once it was dragged.
 fn image(position: vec2f, size: vec2f, mouse: vec2f, now: f32, count: f32) -> vec4f {

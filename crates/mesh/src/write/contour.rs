@@ -79,7 +79,8 @@ fn svg(contour: &Contour) -> String {
 
 fn svg_path(text: &mut String, path: &ContourPath) {
     let mut command = "M";
-    for (segment, is_last) in path.segments().zip((1..=path.points.len()).rev().map(|n| n == 1)) {
+    for (index, segment) in path.segments().enumerate() {
+        let is_last = index + 1 == path.points.len();
         let [[x, y], [to_x, to_y]] = segment.ends;
         if command == "M" {
             let _ = write!(text, "M{x} {}", 0.0 - y);

@@ -70,7 +70,7 @@ impl Display {
     /// [`RenderError::Validation`] if the device refuses it.
     pub fn new(gpu: &Gpu) -> Result<Self, RenderError> {
         let (pipeline, layout, tile) = gpu.scoped("the display", || {
-            let source = wgpu::ShaderSource::Wgsl(include_str!("display.wgsl").into());
+            let source = wgpu::ShaderSource::Wgsl(sdfc_march::display_source().into());
             let descriptor = wgpu::ShaderModuleDescriptor { label: Some("display"), source };
             let module = gpu.device.create_shader_module(descriptor);
             let storage = wgpu::BufferBindingType::Storage { read_only: true };

@@ -182,8 +182,8 @@ impl Pipeline {
     ///
     /// # Errors
     ///
-    /// As [`Pipeline::render`]; [`RenderError::Size`] if the texture has another size than the
-    /// picture. After an error the texture may show a part of it.
+    /// As [`Pipeline::render`]; [`RenderError::TextureSize`] if the texture has another size
+    /// than the picture. After an error the texture may show a part of it.
     pub fn show(
         &self,
         view: &View,
@@ -193,7 +193,8 @@ impl Pipeline {
         progress: &mut OnProgress<'_>,
     ) -> Result<f64, RenderError> {
         if target.size() != view.size {
-            return Err(RenderError::Size(view.size));
+            let (texture, picture) = (target.size(), view.size);
+            return Err(RenderError::TextureSize { texture, picture });
         }
         let draw =
             |run: &mut Run<'_>, tile| run.display(view, tile, display, target).map(|()| None);

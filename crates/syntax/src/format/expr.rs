@@ -36,8 +36,7 @@ fn bare_expr<'a>(source: &mut Source<'a>, tree: &Expr) -> Doc<'a> {
             bracketed(source, elements, element, hug)
         }
         ExprKind::Record(fields) => {
-            let hug =
-                Some(0).filter(|_| matches!(&fields[..], [only] if stays_beside(&only.value)));
+            let hug = matches!(&fields[..], [only] if stays_beside(&only.value)).then_some(0);
             bracketed(source, fields, field, hug)
         }
         ExprKind::Call(..) | ExprKind::Field(..) | ExprKind::Index(..) => postfixes(source, tree),

@@ -127,8 +127,8 @@ impl Parser<'_> {
         self.close(opener, "`,`")
     }
 
-    /// Returns true if the bracket that comes next opens a record or its type.
-    pub(super) fn at_record(&self) -> bool {
+    /// Returns true if the bracket that comes next opens a record.
+    fn at_record(&self) -> bool {
         let name = self.peek(1).kind;
         (name == TokenKind::Name || name.is_reserved()) && self.peek(2).kind == TokenKind::Colon
     }

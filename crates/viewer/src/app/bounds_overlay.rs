@@ -1,6 +1,6 @@
 //! Lines over the picture: the scene's bounds.
 
-use eframe::egui::{Color32, Pos2, Rect, Stroke, Ui, vec2};
+use eframe::egui::{Pos2, Rect, Stroke, Ui, vec2};
 use glam::DVec3;
 use sdfc_render::Pose;
 
@@ -9,12 +9,6 @@ use crate::render::picture::RenderRequest;
 
 /// The near plane at which lines are clipped, as a fraction of the distance to the target.
 const NEAR_PLANE: f64 = 1e-3;
-/// Direction, name and colour of each axis.
-pub(super) const AXES: [(DVec3, &str, Color32); 3] = [
-    (DVec3::X, "x", Color32::from_rgb(230, 90, 80)),
-    (DVec3::Y, "y", Color32::from_rgb(110, 190, 80)),
-    (DVec3::Z, "z", Color32::from_rgb(90, 140, 240)),
-];
 
 /// Draws the bounds over a picture that fills the rectangle, with the picture's camera.
 pub fn show(ui: &Ui, rect: Rect, request: &RenderRequest) {

@@ -2,7 +2,7 @@
 
 use eframe::egui::TextureId;
 use eframe::egui_wgpu::RenderState;
-use eframe::wgpu::{FilterMode, TextureViewDescriptor};
+use eframe::wgpu::{FilterMode, Texture, TextureViewDescriptor};
 
 use crate::render::picture::MovingPicture;
 
@@ -11,7 +11,8 @@ use crate::render::picture::MovingPicture;
 pub struct DeviceTextureSlot {
     state: Option<RenderState>,
     id: Option<TextureId>,
-    shown: Option<MovingPicture>,
+    /// The shown picture's texture and divisor.
+    shown: Option<(Texture, u32)>,
 }
 
 impl DeviceTextureSlot {
@@ -23,15 +24,12 @@ impl DeviceTextureSlot {
     /// The name of a picture's texture; `None` if the window cannot show it.
     pub fn show(&mut self, picture: &MovingPicture) -> Option<TextureId> {
         let state = self.state.as_ref()?;
-        let is_shown = |shown: &MovingPicture| {
-            let textures = [shown, picture].map(|it| it.texture.texture());
-            textures[0] == textures[1] && shown.divisor == picture.divisor
-        };
-        if self.shown.as_ref().is_some_and(is_shown) {
+        let (texture, divisor) = (picture.texture.texture(), picture.divisor);
+        if self.shown.as_ref().is_some_and(|shown| (&shown.0, shown.1) == (texture, divisor)) {
             return self.id;
         }
-        let view = picture.texture.texture().create_view(&TextureViewDescriptor::default());
-        let filter = match picture.divisor {
+        let view = texture.create_view(&TextureViewDescriptor::default());
+        let filter = match divisor {
             1 => FilterMode::Nearest,
             _ => FilterMode::Linear,
         };
@@ -42,7 +40,7 @@ impl DeviceTextureSlot {
             }
             None => self.id = Some(renderer.register_native_texture(device, &view, filter)),
         }
-        self.shown = Some(picture.clone());
+        self.shown = Some((texture.clone(), divisor));
         self.id
     }
 }

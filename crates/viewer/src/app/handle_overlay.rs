@@ -7,8 +7,9 @@ use eframe::egui::{
 use glam::{DMat3, DVec3};
 use sdfc_render::Pose;
 
-use super::bounds_overlay::{AXES, project_line};
+use super::bounds_overlay::project_line;
 use super::theme;
+use super::view_gizmo::AXES;
 use crate::session::Session;
 use crate::session::handle_state::ValueHandle;
 

@@ -1,5 +1,6 @@
 //! Asks for a path: of a new scene, of a scene to open, or of a copy.
 
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use eframe::egui::{self, Context, Key, RichText, Ui};
@@ -8,13 +9,9 @@ use super::theme;
 use crate::session::Session;
 
 /// The contents of a new scene.
-pub const NEW_SCENE: &str =
-    "// A new scene. Type, or hold Alt and drag a number. F1 lists all keys.
-\
-    sphere(0.5).translate(y: 0.5).color(#e07a4f)
-\
-    plane()
-";
+pub const NEW_SCENE: &str = "// A new scene. Type, or hold Alt and drag a number. F1 lists all keys.\n\
+     sphere(0.5).translate(y: 0.5).color(#e07a4f)\n\
+     plane()\n";
 /// The most files of a folder that are listed.
 const MAX_LISTED: usize = 200;
 
@@ -162,11 +159,13 @@ pub fn create(path: &Path, text: &str) -> Result<(), String> {
     if path.extension().is_none_or(|ending| ending != "sdf") {
         return Err("a scene's name ends in .sdf".to_owned());
     }
-    if path.exists() {
-        return Err("this file exists; choose another name".to_owned());
-    }
-    sdfc_files::write(path, text.as_bytes())
-        .map_err(|error| format!("cannot write {}: {error}", path.display()))
+    sdfc_files::create(path, text.as_bytes()).map_err(|error| {
+        if error.kind() == ErrorKind::AlreadyExists {
+            "this file exists; choose another name".to_owned()
+        } else {
+            format!("cannot write {}: {error}", path.display())
+        }
+    })
 }
 
 /// Lists folders and scenes of the path's folder. Returns the one that was clicked.

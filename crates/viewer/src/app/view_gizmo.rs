@@ -4,11 +4,16 @@ use eframe::egui::{self, Align2, Color32, FontId, Rect, Sense, Stroke, Ui, Vec2,
 use glam::DVec3;
 use sdfc_render::Pose;
 
-use super::bounds_overlay::AXES;
 use super::theme;
 use crate::session::Session;
 use crate::session::orbit_camera::Side;
 
+/// Direction, name and colour of each axis.
+pub(super) const AXES: [(DVec3, &str, Color32); 3] = [
+    (DVec3::X, "x", Color32::from_rgb(230, 90, 80)),
+    (DVec3::Y, "y", Color32::from_rgb(110, 190, 80)),
+    (DVec3::Z, "z", Color32::from_rgb(90, 140, 240)),
+];
 /// The length of the axes in points.
 const LENGTH: f32 = 27.0;
 /// The radius of their ends in points.

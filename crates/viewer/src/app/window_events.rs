@@ -62,7 +62,7 @@ impl WindowEvents {
         self.state.get()
     }
 
-    /// The device that shows the window, if the scene is drawn on it: if it is that of a GPU. With
+    /// Returns the device of the window if the scene is drawn on it too, which is so on a GPU. With
     /// a software driver, the copy of a picture costs little, and with a separate device, the
     /// frames of the window do not wait for the rays.
     pub fn drawing_device(&self) -> Option<(&RenderState, WindowDevice)> {

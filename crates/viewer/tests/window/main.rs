@@ -40,7 +40,7 @@ fn main() -> ExitCode {
         ("the_window_survives_any_size_and_shows_the_newest_scene_after_hiding", sizes),
         ("closing_the_window_stores_the_settings", closing),
         ("a_window_whose_device_is_lost_is_replaced", lost),
-        ("a_moving_picture_is_drawn_on_the_device_of_the_window", on_device),
+        ("a_moving_picture_shows_the_scene_before_and_after_a_lost_device", moving),
         ("a_device_loss_within_a_frame_stores_the_settings", lost_midway),
         ("typed_text_survives_a_device_loss", unsaved_text::survives_a_loss_within_a_frame),
         ("an_idle_window_uses_no_cpu_time", idle),
@@ -264,8 +264,8 @@ fn is_refining(picture: &RgbImage) -> bool {
 }
 
 /// While the button is down, the picture counts as moving and is drawn coarsely on a slow machine.
-/// When the device is lost, the scene is drawn on the device of the new window.
-fn on_device(display: Display) -> Result<(), Failed> {
+/// It shows the scene, also in the window that replaces one whose device was lost.
+fn moving(display: Display) -> Result<(), Failed> {
     let scene = Scene::new(&BALL.replace("sphere(1)", "box([1, 1, 1])"))?;
     let environment = [(DRAW_ON_WINDOW, "1"), (LOSE_WINDOW, "150")];
     let window = Window::open_with(&display, &scene, &environment)?;

@@ -21,10 +21,12 @@ pub struct HoverText {
     last: Option<Described>,
 }
 
-/// What is at an offset of a text.
+/// The description of the name at an offset of a text, with the facts of a model.
 #[derive(Debug)]
 struct Described {
     text: Arc<str>,
+    /// The serial of the model; `None` if there was none.
+    model: Option<u64>,
     offset: usize,
     hover: Option<Hover>,
 }
@@ -62,12 +64,16 @@ impl HoverText {
     fn hover(&mut self, session: &Session, offset: usize) -> Option<Hover> {
         let analysis = &session.answer_about_text()?.analysis;
         let text = session.shown_text();
-        let is_last = |it: &&Described| Arc::ptr_eq(&it.text, text) && it.offset == offset;
+        let model = session.model.as_ref().map(|model| model.serial);
+        let is_last = |it: &&Described| {
+            Arc::ptr_eq(&it.text, text) && (it.model, it.offset) == (model, offset)
+        };
         if let Some(last) = self.last.as_ref().filter(is_last) {
             return last.hover.clone();
         }
         let found = hover(analysis, offset, &mut |call| facts(session, call));
-        self.last = Some(Described { text: Arc::clone(text), offset, hover: found.clone() });
+        let text = Arc::clone(text);
+        self.last = Some(Described { text, model, offset, hover: found.clone() });
         found
     }
 
