@@ -31,8 +31,8 @@ impl Blend {
         if !is_chain(a) && is_chain(b) { [b, a] } else { [a, b] }
     }
 
-    /// True if the depth of the blend below the lesser operand depends only on the difference of the
-    /// operands. Then the derivatives with respect to the operands add up to 1.
+    /// True if the depth of the blend below the lesser operand depends only on the difference of
+    /// the operands. Then the derivatives with respect to the operands add up to 1.
     pub fn is_symmetric(self) -> bool {
         self.is_symmetric
     }

@@ -23,7 +23,7 @@
 //! to `record_sample`. A change of sign counts as a hit, so that a ray that has passed through a
 //! surface does not walk away from it.
 //!
-//! The blocks ([`ViewBlock`], [`PixelBlock`]) match what `view.wgsl` and `pixel_layout.wgsl` declare;
+//! The blocks ([`ViewBlock`], [`PixelBlock`]) match what `view.wgsl` and `pixel_layout.wgsl` state;
 //! their layout is that of WGSL.
 
 mod blocks;

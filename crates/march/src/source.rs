@@ -162,8 +162,8 @@ pub fn culling_source() -> String {
     files.join("\n")
 }
 
-/// Returns the source of the shader that writes pixels into a texture that a window shows. Its entry
-/// point is `main`, one invocation for each pixel of a tile.
+/// Returns the source of the shader that writes pixels into a texture that a window shows. Its
+/// entry point is `main`, one invocation for each pixel of a tile.
 pub fn display_source() -> String {
     [PIXEL_LAYOUT, SRGB, include_str!("wgsl/display.wgsl")].join("\n")
 }

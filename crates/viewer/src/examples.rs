@@ -132,7 +132,7 @@ mod tests {
     #[test]
     fn the_welcome_scene_has_sliders() {
         let model = model(WELCOME.source);
-        let names: Vec<_> = model.scene.params().iter().map(|param| param.name.clone()).collect();
+        let names: Vec<_> = model.declared().iter().map(|param| param.name.clone()).collect();
         assert_eq!(names, ["hole", "soft", "paint"]);
     }
 
