@@ -146,13 +146,14 @@ impl Features {
         ]
     }
 
-    /// The functions whose calls the linker drops because nothing reads what they record.
+    /// The functions whose calls the linker drops because nothing reads what they set.
     pub fn unused(self) -> Vec<&'static str> {
-        let recorders = [
+        let calls = [
             (stubs::RECORD_SAMPLE, self.soft_shadows),
             (stubs::RECORD_SLOPE, self.occlusion),
             (stubs::RECORD_GAP, self.records_gaps),
+            (stubs::LIMIT_LOOPS, self.loops),
         ];
-        recorders.into_iter().filter(|recorder| !recorder.1).map(|recorder| recorder.0).collect()
+        calls.into_iter().filter(|call| !call.1).map(|call| call.0).collect()
     }
 }

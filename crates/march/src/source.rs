@@ -112,6 +112,7 @@ pub fn source_with(
         field,
         method.gradient.unwrap_or(gradient),
         include_str!("wgsl/frame.wgsl"),
+        include_str!("wgsl/loops.wgsl"),
         RANGES,
         RAY,
         BRACKET,

@@ -73,6 +73,11 @@ pub const RECORD_SLOPE: &str = "record_slope";
 /// that it is free. No scene supplies it; its calls are dropped if pixels do not tell
 /// ([`Features::records_gaps`](crate::Features::records_gaps)).
 pub const RECORD_GAP: &str = "record_gap";
+/// `fn limit_loops(is_drawn: bool)`, which entry points call. No scene supplies it; its calls are
+/// dropped if the scene has no loops.
+pub const LIMIT_LOOPS: &str = "limit_loops";
+/// `var<private> loop_limit: f32`, a limit on iterations that no loop reaches.
+pub const LOOP_LIMIT: &str = "loop_limit";
 /// `fn culling_bounds_0(iteration: f32, p: vec3f) -> vec3f` and so on, one for each loop that can
 /// be culled, of [`culling_source`](crate::culling_source). `x`: lower bound on the distance to
 /// where the iteration can affect a ray. `y`: the iteration's operand minus the blend radius. `z`:

@@ -5,7 +5,7 @@ use std::hash::Hash;
 use rustc_hash::FxHashMap;
 use sdfc_graph::{Binary, Const, Graph, LoopVar, NodeId, Table, Type};
 
-use crate::reroll::loops::MIN_OPERANDS;
+use crate::reroll::loops::is_worth_a_loop;
 use crate::reroll::template::{ShapeKeys, template};
 
 /// Groups of positions of values that are equal up to constants.
@@ -39,7 +39,7 @@ pub(super) fn common_operand(
     keys: &ShapeKeys,
     operands: &[NodeId],
 ) -> Option<NodeId> {
-    if operands.len() < MIN_OPERANDS {
+    if !is_worth_a_loop(graph, operands) {
         return None;
     }
     let index = graph.variable(0, LoopVar::Index, Type::Scalar);

@@ -18,7 +18,7 @@ use sdfc_graph::{
 
 use crate::reroll::blended::{MaterialLoop, joined};
 use crate::reroll::kinds::{common_operand, formulas_by_kind, grouped};
-use crate::reroll::loops::{MIN_OPERANDS, loop_over};
+use crate::reroll::loops::loop_over;
 use crate::reroll::rewrite::rebuilt;
 use crate::reroll::selection::{Selection, minimum, selections};
 use crate::reroll::template::ShapeKeys;
@@ -69,9 +69,6 @@ pub(crate) fn reroll_materials(
         })
         .collect();
     for selection in selections(graph, &reachable(graph, fields)) {
-        if selection.operands.len() < MIN_OPERANDS {
-            continue;
-        }
         if let Some((nearest, values)) = lookup(graph, &mut keys, &selection, replaced) {
             lookups.values.extend(selection.heads.iter().copied().zip(values));
             lookups.minima.insert(selection.distances, nearest.distance);

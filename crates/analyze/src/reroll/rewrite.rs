@@ -131,7 +131,7 @@ impl Rerolling<'_> {
             let chain = match plain.contains(id) || self.graph.loops_around(id) != 0 {
                 true => None,
                 false => chain::chain(self.graph, &mut blends, id)
-                    .filter(|chain| chain.len() >= MIN_OPERANDS),
+                    .filter(|chain| chain.len() >= MIN_OPERANDS || roots.contains(&id)),
             };
             let Some(chain) = chain else {
                 pending.extend(self.graph.arguments(id));

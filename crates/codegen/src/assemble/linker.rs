@@ -7,7 +7,7 @@ use sdfc_march::{FieldSource, Form, MethodDefinition, source_with, stubs};
 use super::bindings::{StubBinding, analytic_bindings, segment_bindings};
 use super::template::{features, has_loops, is_culled, template, used_slots};
 use crate::error::Error;
-use crate::link::template::{bind, find_function};
+use crate::link::template::{bind, find_function, find_variable};
 use crate::lower::inputs::{Inputs, declare_variable};
 use crate::lower::{POINT, store_function, struct_function};
 use crate::reflection::{ModuleParts, Role};
@@ -155,6 +155,7 @@ impl<'p> PictureLinker<'p> {
         let mut roots: Vec<_> = self.bindings.iter().map(|binding| binding.root).collect();
         roots.extend(material(self.program).into_iter().flat_map(|it| it.fields));
         self.inputs.tables.declare(&mut self.module, self.program, &roots)?;
+        self.inputs.loop_limit = find_variable(&self.module, stubs::LOOP_LIMIT);
         let (module, inputs) = (&mut self.module, &self.inputs);
         for binding in &self.bindings {
             let function = binding.function(self.program, inputs, &mut module.types)?;

@@ -9,7 +9,7 @@ use super::culling::culling;
 use super::linker::PictureLinker;
 use super::template::{features, is_culled, template, used_slots};
 use crate::error::Error;
-use crate::link::template::bind;
+use crate::link::template::{bind, find_variable};
 use crate::lower::active_lists::ActiveLists;
 use crate::lower::inputs::{declare_members, declare_slots, raw_inputs};
 use crate::lower::tables::Tables;
@@ -120,6 +120,7 @@ fn link_benchmark(
     let (mut inputs, load_frame) = declare_slots(&mut module, program, &used, SLOTS);
     inputs.tables = Tables::in_buffer(LISTS);
     inputs.active_lists = ActiveLists::find(&module, program);
+    inputs.loop_limit = find_variable(&module, stubs::LOOP_LIMIT);
     inputs.tables.declare(&mut module, program, distance.as_slice())?;
     if let Some(load_frame) = load_frame {
         bind(&mut module, stubs::LOAD_FRAME, load_frame)?;

@@ -29,6 +29,9 @@ pub(crate) struct Inputs {
     pub(crate) tables: Tables,
     /// The lists of iterations that loops run; `None` runs all.
     pub(crate) active_lists: Option<ActiveLists>,
+    /// A variable that is greater than the number of iterations of any loop, so that drivers do not
+    /// know that number; `None` if loops have constant limits.
+    pub(crate) loop_limit: Option<Handle<GlobalVariable>>,
 }
 
 /// The location of a raw input.

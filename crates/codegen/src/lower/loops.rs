@@ -186,8 +186,14 @@ impl Lowering<'_> {
     /// The number of iterations, at most `max`.
     fn limit(&mut self, cap: u32, count: Option<NodeId>) -> Result<Value, Error> {
         let cap = self.body.literal(cap as f32);
-        let Some(count) = count else { return Ok(cap) };
-        let count = self.value(count)?;
+        let count = match (count, self.inputs.loop_limit) {
+            (Some(count), _) => self.value(count)?,
+            (None, Some(unreached)) => {
+                let pointer = self.body.declare(Expression::GlobalVariable(unreached));
+                self.body.load(pointer, "unreached")
+            }
+            (None, None) => return Ok(cap),
+        };
         let limit = self.body.call2(MathFunction::Min, count, cap);
         self.body.name(limit, "iterations");
         Ok(limit)

@@ -24,10 +24,11 @@ fn has_ended_loops(column: u32) -> bool {
 }
 
 @compute @workgroup_size(8, 8)
-fn main(@builtin(global_invocation_id) id: vec3u) {
+fn main(@builtin(global_invocation_id) id: vec3u, @builtin(workgroup_id) group: vec3u) {
     if any(id.xy >= view.tile_size) {
         return;
     }
+    limit_loops(group.x < view.tile_size.x);
     load_frame();
     if CULLED {
         start_pixel(id.xy);

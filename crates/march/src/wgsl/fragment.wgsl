@@ -7,6 +7,7 @@ fn vertex(@builtin(vertex_index) corner: u32) -> @builtin(position) vec4f {
 
 @fragment
 fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
+    limit_loops(position.x >= 0.0);
     load_frame();
     return picture(pixel_at(position.xy)).color;
 }

@@ -44,6 +44,7 @@ fn set_view(shown: Camera, size: vec2f, drag: vec2f) {
 fn image(position: vec2f, size: vec2f, mouse: vec2f, now: f32, count: f32) -> vec4f {
     load_time(now);
     load_count(count);
+    limit_loops(position.x >= 0.0);
     load_frame();
     var drag = vec2f(0.0);
     if any(mouse > vec2f(0.0)) {

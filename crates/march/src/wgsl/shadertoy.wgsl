@@ -87,6 +87,7 @@ fn load_headlight() {
 fn image(position: vec2f, size: vec2f, mouse: vec2f, now: f32, count: f32) -> vec4f {
     load_time(now);
     load_count(count);
+    limit_loops(position.x >= 0.0);
     load_frame();
     load_view();
     var shown = camera();
