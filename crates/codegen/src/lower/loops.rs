@@ -12,6 +12,10 @@ use super::lowering::{Lowering, POINT, hint};
 use super::types;
 use crate::error::Error;
 
+/// The largest number of iterations that drivers may know. Fewer take them little time, and a
+/// hidden limit takes a register.
+const MAX_KNOWN: u32 = 8;
+
 /// The listed iterations of a loop: the index of the first one's number, and the end index.
 struct Listed {
     first: Value,
@@ -185,8 +189,9 @@ impl Lowering<'_> {
 
     /// The number of iterations, at most `max`.
     fn limit(&mut self, cap: u32, count: Option<NodeId>) -> Result<Value, Error> {
+        let hidden = self.inputs.loop_limit.filter(|_| cap > MAX_KNOWN);
         let cap = self.body.literal(cap as f32);
-        let count = match (count, self.inputs.loop_limit) {
+        let count = match (count, hidden) {
             (Some(count), _) => self.value(count)?,
             (None, Some(unreached)) => {
                 let pointer = self.body.declare(Expression::GlobalVariable(unreached));
