@@ -32,7 +32,24 @@ fn main() {
     let tuned =
         Trial::test("metrics are written without a result", metrics_are_written_without_a_result);
     trials.push(tuned.with_ignored_flag(without_gpu()));
+    let sampled = Trial::test("samples a step apart prove nothing", samples_prove_nothing);
+    trials.push(sampled.with_ignored_flag(without_gpu()));
     libtest_mimic::run(&Arguments::from_args(), trials).exit();
+}
+
+/// A method that takes samples a step apart may miss a part of a certified field, too.
+fn samples_prove_nothing() -> Result<(), Failed> {
+    let folder = folder(&[("a.sdf", BALL)]);
+    let args = "render a.sdf --size 24x16 -o a.png --strict";
+    let certified = run_in(folder.path(), args, b"", &[]);
+    if certified.status.code() != Some(0) {
+        return Err(said(&certified).into());
+    }
+    let sampled = run_in(folder.path(), &format!("{args} --march fixed"), b"", &[]);
+    if sampled.status.code() != Some(1) || !said(&sampled).contains("384 of 384 pixels") {
+        return Err(format!("{:?}, {}", sampled.status, said(&sampled)).into());
+    }
+    Ok(())
 }
 
 /// Numbers of calls, from one to the most that a picture takes.

@@ -33,6 +33,7 @@ fn wrong_names_are_reported() {
         "solid a(r: length) = length(p) - r\nregion a(r: length) = length(p) - r\na(1)",
         "fn f(a, a) = a\nsphere(f(1, 2))",
         "sphere(1).smooooth(2).tralate(x: 1)",
+        "sphere(1).translate(1, 2, 3)\ncircle(1).translate(1, 2)\nsphere(1).scale(1, 2, 3)",
         "cube(1)\nsphere(PI)\nsdRoundCone(1)\nsmin(sphere(1), box(1), 0.1)\nsphere(1).move(x: 1).color(red)\nlight()\nfn f(x: float) = x",
     ]));
 }

@@ -9,7 +9,7 @@ use serde::Serialize;
 
 use crate::error::{MeshError, Phase, Progress};
 use crate::field::{Field, LocalField, Prism, Prober};
-use crate::mesh::check;
+use crate::mesh::check_bounds;
 use crate::refine::report;
 
 /// Samples of a scene's field at the points of a regular grid.
@@ -139,7 +139,7 @@ fn position(origin: [f64; 3], spacing: f64, at: [usize; 3]) -> [f64; 3] {
 /// Returns the grid without values.
 fn layout(options: &BakeOptions) -> Result<DistanceGrid, MeshError> {
     let BakeOptions { bounds: [lo, hi], resolution, .. } = *options;
-    check([lo, hi], 1.0)?;
+    check_bounds([lo, hi])?;
     let refused = |resolution| {
         Err(MeshError::Resolution { resolution, least: 4, most: BakeOptions::MAX_SAMPLES })
     };

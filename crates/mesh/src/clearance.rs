@@ -11,7 +11,7 @@ use crate::certify::parts;
 use crate::error::{MeshError, Phase, Progress};
 use crate::field::{Field, LocalField, Prism, Prober};
 use crate::measurement::{MeasureOptions, Proven};
-use crate::mesh::check;
+use crate::mesh::check_relative;
 use crate::refine::report;
 use crate::vector::{Vec3, add, between, length, scale, sub, unit};
 
@@ -57,7 +57,7 @@ pub fn clearance(
     progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
 ) -> Result<Clearance, MeshError> {
     let MeasureOptions { bounds, relative, max_cells } = *options;
-    check(bounds, relative)?;
+    check_relative(bounds, relative)?;
     let [first, second] = solids.map(Field::new);
     let [first, second] =
         [first?.ok_or(MeshError::NothingDrawn)?, second?.ok_or(MeshError::NothingDrawn)?];

@@ -9,7 +9,7 @@ use serde::Serialize;
 use crate::error::{MeshError, Progress};
 use crate::extent::reach;
 use crate::field::{Field, LocalField};
-use crate::mesh::check;
+use crate::mesh::check_relative;
 use crate::moments::{Integrals, Integrator, PAIRS};
 
 /// A number that is proven to lie between two others, both included.
@@ -98,7 +98,7 @@ pub fn measure(
 ) -> Result<Measurements, MeshError> {
     let field = Field::new(program)?.ok_or(MeshError::NothingDrawn)?;
     let MeasureOptions { bounds, relative, max_cells } = *options;
-    check(bounds, relative)?;
+    check_relative(bounds, relative)?;
     let local = LocalField::new(field.distance(), frame);
     let integrator = Integrator { field: &local, bounds, relative, max_cells };
     let integrals = integrator.integrate(progress)?;

@@ -45,17 +45,27 @@ pub fn mesh(
     Ok(mesh)
 }
 
-/// Checks that the bounds are finite and the error is a positive number.
-pub(crate) fn check(bounds: [[f64; 3]; 2], error: f64) -> Result<(), MeshError> {
+/// Checks that the bounds are finite.
+pub(crate) fn check_bounds(bounds: [[f64; 3]; 2]) -> Result<(), MeshError> {
     for (axis, name) in ['x', 'y', 'z'].into_iter().enumerate() {
         if !(bounds[1][axis] - bounds[0][axis]).is_finite() {
             return Err(MeshError::Unbounded { axis: name });
         }
     }
-    // Last, because an error relative to infinite bounds is infinite.
-    if !(error > 0.0 && error.is_finite()) {
-        return Err(MeshError::Error(error));
-    }
+    Ok(())
+}
+
+/// Checks that the bounds are finite, and that an error relative to them is a positive number.
+pub(crate) fn check_relative(bounds: [[f64; 3]; 2], relative: f64) -> Result<(), MeshError> {
+    check_bounds(bounds)?;
+    let is_valid = relative > 0.0 && relative.is_finite();
+    if is_valid { Ok(()) } else { Err(MeshError::Error(relative)) }
+}
+
+/// Checks that the bounds are finite, and that the error is a positive number and not too large.
+pub(crate) fn check(bounds: [[f64; 3]; 2], error: f64) -> Result<(), MeshError> {
+    // The bounds first, because an error relative to infinite bounds is infinite.
+    check_relative(bounds, error)?;
     let longest = (0..3).map(|axis| bounds[1][axis] - bounds[0][axis]).fold(0.0, f64::max);
     // Such an error allows a mesh that misses the whole scene. A scene without a size has its own
     // message.

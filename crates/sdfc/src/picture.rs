@@ -461,7 +461,10 @@ impl Painter<'_> {
     /// Returns what part of a picture with these pixels is unproven, and counts it.
     fn unproven(&self, pixels: &mut PixelCounts) -> Option<String> {
         let all = pixels.all();
-        let why = if self.scene.trusts_uncertified(self.method) {
+        let why = if self.method == Method::Fixed && !self.program.is_planar() {
+            pixels.unproven = all;
+            "its samples are a step apart, and what is thinner may lie between two of them"
+        } else if self.scene.trusts_uncertified(self.method) {
             pixels.unproven = all;
             "the field is uncertified, and its value is the length of the steps"
         } else if pixels.unproven > pixels.capped {

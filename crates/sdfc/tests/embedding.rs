@@ -19,6 +19,18 @@ fn scene() -> Scene {
     Compiler::new().compile("a.sdf", SCENE).unwrap_or_else(|errors| panic!("{errors}"))
 }
 
+/// Each step reads the last one twice, and a loop reads the last step.
+#[test]
+fn shared_values_outside_a_loop_are_looked_at_once() {
+    let source = "param m = 0.5 in 0.4..0.6\nfn step(s: number, n: int) -> number = if n == 0 { s } \
+                  else { step(s * (1 - s) * 3, n - 1) }\nlet k = step(m, 40)\npolygon([for i in 0..8: \
+                  [3 + 0.1 * k * i, 0.05 * k * i * i]]).polar_repeat(18).extrude(8)";
+    let scene =
+        Compiler::new().compile("a.sdf", source).unwrap_or_else(|errors| panic!("{errors}"));
+    let written = scene.write_shader(&ShaderOptions::new().emit(Emit::Field));
+    assert!(written.is_ok(), "{:?}", written.err());
+}
+
 #[test]
 fn threads_may_share_scenes() {
     fn shared<T: Send + Sync>() {}

@@ -15,6 +15,11 @@ fn bake(scene: &Scene, resolution: usize) -> Result<DistanceGrid, Error> {
     scene.bake(&options, &mut |_| ControlFlow::Continue(()))
 }
 
+#[test]
+fn a_scene_may_be_smaller_than_a_unit() {
+    assert_eq!(bake(&scene("sphere(0.001)"), 16).unwrap().shape, [16; 3]);
+}
+
 /// A source of pseudo-random numbers from 0 to 1.
 struct Random(u64);
 

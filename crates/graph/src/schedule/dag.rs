@@ -1,5 +1,7 @@
 //! The nodes of one function, and which of them each reads.
 
+use rustc_hash::FxHashSet;
+
 use crate::dominators::DominatorTree;
 use crate::graph::Graph;
 use crate::ids::IdMap;
@@ -38,15 +40,18 @@ impl Dag {
         let positions: IdMap<usize> = members.iter().copied().zip(0..).collect();
         let mut dag =
             Self { nodes: members.to_vec(), arguments: vec![], roots: vec![], lanes: vec![] };
+        let mut seen: FxHashSet<NodeId> = FxHashSet::default();
         for (position, &id) in members.iter().enumerate() {
-            // Operands that are no members are looked through.
+            // Operands that are no members are looked through, each once.
             let mut arguments: Vec<usize> = Vec::new();
+            seen.clear();
             let mut pending = operands(id);
             while let Some(operand) = pending.pop() {
                 match positions.get(operand) {
                     Some(argument) if argument < position => arguments.push(argument),
                     Some(_) => {}
-                    None => pending.extend(operands(operand)),
+                    None if seen.insert(operand) => pending.extend(operands(operand)),
+                    None => {}
                 }
             }
             arguments.sort_unstable();

@@ -84,15 +84,20 @@ impl<'a> Checker<'a> {
     }
 }
 
-/// The diagnostic for too many arguments.
+/// The diagnostic for too many arguments, of which at most `unnamed` have no name.
 pub(super) fn too_many(
     callee: Callee,
     parameters: &[ParameterSignature],
+    unnamed: usize,
     span: Span,
 ) -> Diagnostic {
-    let message = match parameters.len() {
-        0 => format!("`{}` takes no arguments", callee.name),
-        n => format!("`{}` takes at most {}", callee.name, count(n, "argument")),
+    let name = callee.name;
+    let message = match unnamed {
+        0 => format!("`{name}` takes no arguments"),
+        n if n < parameters.len() => {
+            format!("`{name}` takes at most {} without a name", count(n, "argument"))
+        }
+        n => format!("`{name}` takes at most {}", count(n, "argument")),
     };
     Diagnostic::error(Code::ARGUMENTS, span, message).help(signature(callee.name, parameters))
 }

@@ -60,6 +60,7 @@ impl<'a> Checker<'a> {
     ) -> Vec<Vec<Given<'a>>> {
         let mut bound: Vec<Vec<Given>> = vec![Vec::new(); parameters.len()];
         let (mut next, mut named, mut excess) = (0, false, Vec::new());
+        let unnamed = unnamed(parameters);
         for mut given in given {
             if given.name.is_none()
                 && let Some(found) = self.parameter_for_value(callee, parameters, &given)
@@ -74,7 +75,7 @@ impl<'a> Checker<'a> {
                     None
                 }
                 None => {
-                    let index = (next < parameters.len()).then_some(next);
+                    let index = (next < unnamed).then_some(next);
                     next += usize::from(
                         parameters.get(next).is_some_and(|parameter| !parameter.variadic),
                     );
@@ -94,7 +95,7 @@ impl<'a> Checker<'a> {
             && first.name.is_none()
             && !named
         {
-            let mut found = too_many(callee, parameters, first.span);
+            let mut found = too_many(callee, parameters, unnamed, first.span);
             found.help.extend(bracketed(callee, parameters, &bound, &excess));
             self.report(found);
         }
@@ -297,17 +298,29 @@ impl<'a> Checker<'a> {
     }
 }
 
-/// The call with its numbers in brackets, as in `box([1, 2, 3])`, if its first parameter is a
-/// vector of as many components as there are numbers.
+/// The number of parameters that arguments without a name can set. The components after a vector,
+/// as in `translate(by, x, y, z)`, need their names: a row of numbers looks like the vector.
+fn unnamed(parameters: &[ParameterSignature]) -> usize {
+    let is_component = |of: &ParameterSignature, name| of.optional && of.name == name;
+    let are_components = |of: &[ParameterSignature]| {
+        matches!(of[0].ty, Type::Vec(_)) && is_component(&of[1], "x") && is_component(&of[2], "y")
+    };
+    parameters.windows(3).position(are_components).map_or(parameters.len(), |vector| vector + 1)
+}
+
+/// The numbers in brackets, as in `box([1, 2, 3])`, if the first parameter, or that after the
+/// receiver, is a vector of as many components as there are numbers.
 fn bracketed(
     callee: Callee,
     parameters: &[ParameterSignature],
     bound: &[Vec<Given>],
     excess: &[Given],
 ) -> Option<String> {
-    let Type::Vec(width) = parameters.first()?.ty else { return None };
+    let first = usize::from(matches!(parameters.first()?.ty, Type::Shape(_)));
+    let Type::Vec(width) = parameters.get(first)?.ty else { return None };
     let given: Vec<String> = bound
         .iter()
+        .skip(first)
         .flatten()
         .chain(excess)
         .map(|given| match given.value {
@@ -316,7 +329,11 @@ fn bracketed(
         })
         .collect::<Option<_>>()?;
     let fits = given.len() == usize::from(width);
-    fits.then(|| format!("write {}([{}])", callee.name, given.join(", ")))
+    let vector = given.join(", ");
+    fits.then(|| match first {
+        0 => format!("write {}([{vector}])", callee.name),
+        _ => format!("write the vector in brackets: [{vector}]"),
+    })
 }
 
 /// Adds the change that names the parameter of an argument.
