@@ -277,11 +277,13 @@ class Meshes(unittest.TestCase):
         self.assertAlmostEqual(np.einsum("ij,ij", a, np.cross(b, c)) / 6, mesh.volume)
         self.assertIsNone(sdfc.compile("sphere(1)").mesh(relative=0.1).colors)
 
-    def test_a_mesh_without_triangles_has_no_bounds(self) -> None:
-        # Two balls that are smaller than the error.
-        mesh = sdfc.compile("sphere(0.01) | sphere(0.01).translate(x: 10)").mesh(error=9)
-        self.assertEqual((len(mesh.triangles), mesh.bounds, mesh.area), (0, None, 0))
-        self.assertEqual(math.copysign(1, mesh.volume), 1)
+    def test_an_error_greater_than_all_parts_is_refused(self) -> None:
+        balls = sdfc.compile("sphere(0.01) | sphere(0.01).translate(x: 10)")
+        with self.assertRaisesRegex(sdfc.ArgumentError, "state a smaller error"):
+            balls.mesh(error=9)
+
+    def test_arrays_are_read_only(self) -> None:
+        mesh = sdfc.compile("sphere(1)").mesh(error=0.1)
         for array in (mesh.vertices, mesh.triangles):
             with self.assertRaisesRegex(ValueError, "read-only"):
                 array[:] = 0
