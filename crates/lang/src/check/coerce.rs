@@ -314,6 +314,7 @@ fn way_out(have: &Type, want: &Type) -> Option<String> {
         (Type::Color | Type::Text, Type::Material) => {
             Some("make a material from a colour: material(color: #d94f30)".into())
         }
+        (_, Type::Shadow) => Some("write hard or soft(8); without it, there is no shadow".into()),
         (Type::Number | Type::Int, Type::Bool) => Some("compare it: x > 0".into()),
         (Type::Vec(_), Type::List(_)) => Some("two to four numbers in brackets are a vector; make a list of its components with `for`: [for c in v: c]".into()),
         _ => None,
