@@ -14,7 +14,7 @@ use sdfc_codegen::{
     Error, FieldOptions, Lists, PictureOptions, Role, Stage, field_module, march_module,
     picture_module, render_module, shadertoy_module,
 };
-use sdfc_graph::{FrameInput, Graph, Program, Shadow, Type, Unary};
+use sdfc_graph::{FrameInput, Graph, Loop, LoopVar, Program, Shadow, Type, Unary};
 use sdfc_march::{LightBlock, METHODS, Method, PixelBlock, ViewBlock};
 
 fn scenes() -> Vec<Program> {
@@ -197,6 +197,24 @@ fn instructions_are_counted() {
         (linked[1].role, linked[1].instructions, linked[1].arithmetic),
         (Role::Gradient, 6, 5)
     );
+}
+
+#[test]
+fn drivers_know_the_limits_of_short_loops_alone() {
+    let hides = |max_iterations| {
+        let mut graph = Graph::new();
+        let index = graph.variable(0, LoopVar::Index, Type::Scalar);
+        let state = graph.variable(0, LoopVar::State(0), Type::Scalar);
+        let ball = common::ball(&mut graph, [0.0; 3], 0.5);
+        let other = graph.add(ball, index);
+        let (step, init) = (vec![graph.min(state, other)], vec![graph.number(9.0)]);
+        let (count, condition, skip) = (None, None, None);
+        let around = Loop { depth: 0, max_iterations, count, condition, init, step, skip };
+        let distance = graph.add_loop(around)[0];
+        let shader = render_module(&program(graph, distance), Method::Auto).expect("links");
+        shader.wgsl().expect("is written").contains("let unreached = loop_limit;")
+    };
+    assert_eq!([8, 9].map(hides), [false, true]);
 }
 
 #[test]

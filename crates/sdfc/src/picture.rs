@@ -461,7 +461,7 @@ impl Painter<'_> {
     /// Returns what part of a picture with these pixels is unproven, and counts it.
     fn unproven(&self, pixels: &mut PixelCounts) -> Option<String> {
         let all = pixels.all();
-        let why = if self.method == Method::Fixed && !self.program.is_planar() {
+        let why = if self.method.definition().misses_thin_parts && !self.program.is_planar() {
             pixels.unproven = all;
             "its samples are a step apart, and what is thinner may lie between two of them"
         } else if self.scene.trusts_uncertified(self.method) {

@@ -139,6 +139,21 @@ fn infinite_blends_and_few_similar_parts_stay_unrolled() {
     assert!(compare("sphere(1) | box(1.5)").report().loops.is_empty());
 }
 
+#[test]
+fn four_long_parts_become_a_loop() {
+    let long = |parts: usize| -> String {
+        let corner = |at: usize| format!("[{:.2}, {:.2}]", number(at) + 2.0, 0.3 * at as f64);
+        let corners: Vec<_> = (0..12).map(corner).collect();
+        let plate = format!("polygon([{}]).extrude(0.3)", corners.join(", "));
+        let part = |at| format!("({plate} & {plate}.rotate(x: 90deg)){}\n", place(at));
+        (0..parts).map(part).collect()
+    };
+    assert_eq!(compare(&long(4)).report().loops.len(), 1);
+    assert!(compare(&long(3)).report().loops.is_empty());
+    let short: String = (0..15).map(|at| format!("sphere(0.3){}\n", place(at))).collect();
+    assert!(compare(&short).report().loops.is_empty());
+}
+
 /// Returns parts of several kinds with materials of several kinds. Some boxes have the place and
 /// outside the distance of hollow boxes before them.
 fn colored() -> String {

@@ -13,16 +13,28 @@ mod radv;
 mod table;
 
 use libtest_mimic::{Arguments, Failed, Trial};
-use sdfc::{Emit, Scene, ShaderOptions, Target};
+use sdfc::{Compiler, Emit, Scene, ShaderOptions, Target};
 use sdfc_test_support::repository;
 use sdfc_tests::compiled_examples;
 
 use crate::radv::Chip;
 use crate::table::{Part, Row, Table};
 
+/// The environment variable with scenes, separated by spaces, whose times to compile are printed
+/// instead of a test. Paths are relative to the repository.
+const TIMES: &str = "GPU_TIMES";
+/// The number of runs of which the shortest counts.
+const RUNS: usize = 5;
+
 fn main() {
     if let Some(folder) = std::env::var_os(radv::SHADERS) {
         return radv::print_statistics(&folder);
+    }
+    if let Ok(scenes) = std::env::var(TIMES) {
+        return print_times(&scenes).unwrap_or_else(|error| {
+            println!("{}", error.message().unwrap_or_default());
+            std::process::exit(1);
+        });
     }
     let is_required = std::env::var_os("SDFC_REQUIRE_GPU").is_some_and(|value| value == "1");
     let is_ignored = !is_required && radv::manifest().is_none();
@@ -99,4 +111,22 @@ fn measure(part: Part) -> Result<Table, Failed> {
         Row { name, chips }
     };
     Ok(Table { driver, rows: names.into_iter().enumerate().map(row).collect() })
+}
+
+/// Prints the time that the shader of each scene's picture takes to compile.
+fn print_times(scenes: &str) -> Result<(), Failed> {
+    let manifest = radv::manifest().ok_or("there is no RADV driver")?;
+    for name in scenes.split_whitespace() {
+        let text = std::fs::read_to_string(repository().join(name))?;
+        let scene = Compiler::new().compile(name, &text)?;
+        let folder = tempfile::tempdir()?;
+        std::fs::write(folder.path().join("0.spv"), spirv(&scene, Part::Render)?)?;
+        let mut least = u64::MAX;
+        for _ in 0..RUNS {
+            let run = radv::statistics(Chip::Navi21, manifest, folder.path())?;
+            least = run.times.into_iter().fold(least, u64::min);
+        }
+        println!("{name}: {:.2} s", least as f64 * 1e-6);
+    }
+    Ok(())
 }

@@ -4,6 +4,7 @@ use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::OnceLock;
+use std::time::Instant;
 
 use crate::driver;
 
@@ -59,6 +60,8 @@ pub struct Run {
     pub driver: String,
     /// The shaders, in the order of their names.
     pub shaders: Vec<Statistics>,
+    /// The time that each took to compile, in microseconds.
+    pub times: Vec<u64>,
 }
 
 /// The file that tells the Vulkan loader where RADV is; `None` if it is not installed.
@@ -99,23 +102,26 @@ pub fn statistics(chip: Chip, manifest: &Path, folder: &Path) -> Result<Run, Str
     }
     let mut lines = text.lines();
     let driver = lines.next().unwrap_or("").to_owned();
-    let shaders = lines.map(parsed).collect::<Option<_>>();
-    Ok(Run { driver, shaders: shaders.ok_or_else(|| format!("not understood: {text}"))? })
+    let shaders = lines.map(parsed).collect::<Option<Vec<_>>>();
+    let (shaders, times) =
+        shaders.ok_or_else(|| format!("not understood: {text}"))?.into_iter().unzip();
+    Ok(Run { driver, shaders, times })
 }
 
-fn parsed(line: &str) -> Option<Statistics> {
+fn parsed(line: &str) -> Option<(Statistics, u64)> {
     let numbers: Vec<u64> = line.split(' ').map(str::parse).collect::<Result<_, _>>().ok()?;
-    let [registers, spilled, waves, instructions, cost] = numbers[..] else { return None };
-    Some(Statistics { registers, spilled, waves, instructions, cost })
+    let [registers, spilled, waves, instructions, cost, time] = numbers[..] else { return None };
+    Some((Statistics { registers, spilled, waves, instructions, cost }, time))
 }
 
 /// Compiles the shaders of a folder and prints the driver and a line for each shader.
 pub fn print_statistics(folder: &OsStr) {
     match compiled(Path::new(folder)) {
-        Ok(Run { driver, shaders }) => {
+        Ok(Run { driver, shaders, times }) => {
             println!("{driver}");
-            for Statistics { registers, spilled, waves, instructions, cost } in shaders {
-                println!("{registers} {spilled} {waves} {instructions} {cost}");
+            for (shader, time) in shaders.into_iter().zip(times) {
+                let Statistics { registers, spilled, waves, instructions, cost } = shader;
+                println!("{registers} {spilled} {waves} {instructions} {cost} {time}");
             }
         }
         Err(message) => {
@@ -130,12 +136,14 @@ fn compiled(folder: &Path) -> Result<Run, String> {
     let mut paths: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
     paths.sort();
     let device = driver::Device::open().map_err(|error| error.to_string())?;
-    let mut shaders = Vec::new();
+    let (mut shaders, mut times) = (Vec::new(), Vec::new());
     for path in paths {
         let code = std::fs::read(&path).map_err(|error| error.to_string())?;
         let words: Vec<u32> =
             code.as_chunks().0.iter().map(|bytes| u32::from_le_bytes(*bytes)).collect();
+        let start = Instant::now();
         let named = device.statistics(&words).map_err(|e| format!("{}: {e}", path.display()))?;
+        times.push(start.elapsed().as_micros() as u64);
         let get = |name: &str| {
             let found = named.iter().find(|(known, _)| known == name);
             found.map(|found| found.1).ok_or_else(|| format!("the driver does not report {name}"))
@@ -148,5 +156,5 @@ fn compiled(folder: &Path) -> Result<Run, String> {
             cost: get("Inverse Throughput")?,
         });
     }
-    Ok(Run { driver: device.driver().to_owned(), shaders })
+    Ok(Run { driver: device.driver().to_owned(), shaders, times })
 }

@@ -360,7 +360,7 @@ impl Slopes {
         Ok(graph.add(moved, turned))
     }
 
-    /// The slope of `smoothstep` between two fixed edges is at most 3 / 2 by their distance.
+    /// The slope of `smoothstep` between two fixed edges is at most 1.5 / (hi - lo).
     fn smoothstep(&self, graph: &mut Graph, [lo, hi, x]: [NodeId; 3]) -> Constant {
         // The edges themselves, because their distance may be fixed where both move.
         let moves = graph.stage(lo) == Stage::Point || graph.stage(hi) == Stage::Point;

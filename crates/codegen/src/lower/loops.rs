@@ -187,7 +187,7 @@ impl Lowering<'_> {
         self.visit(roots, &needed)
     }
 
-    /// The number of iterations, at most `max`.
+    /// The number of iterations, at most `cap`.
     fn limit(&mut self, cap: u32, count: Option<NodeId>) -> Result<Value, Error> {
         let hidden = self.inputs.loop_limit.filter(|_| cap > MAX_KNOWN);
         let cap = self.body.literal(cap as f32);

@@ -91,7 +91,7 @@ enum Next<T> {
     Bounds(T),
 }
 
-/// What is known of the field where a ray is.
+/// A part of a ray, from its current position on, and the facts that hold for the field there.
 #[derive(Clone, Copy)]
 struct Stretch<T> {
     /// The position up to which it holds.
