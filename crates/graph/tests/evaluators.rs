@@ -37,6 +37,31 @@ fn frame<N: Number>(param: N) -> FrameValues<N> {
     FrameValues { params: vec![[param; 4]], time: zero, frame: zero }
 }
 
+/// The coordinates of the points of a box.
+fn coordinates(ranges: [[f64; 2]; 3]) -> [Affine; 3] {
+    [0, 1, 2].map(|i| {
+        let [lo, hi] = ranges[i];
+        let mut half = [0.0; 3];
+        half[i] = (0.5 * (hi - lo)).next_up();
+        Affine::coordinate(0.5 * lo + 0.5 * hi, half)
+    })
+}
+
+/// The ranges of a field over a box, on each path through its jumps.
+fn on_paths(mut range_along: impl FnMut(&mut BranchPath) -> Interval) -> Vec<Interval> {
+    let (mut path, mut found) = (BranchPath::default(), Vec::new());
+    loop {
+        let range = range_along(&mut path);
+        if path.fork(4) {
+            continue;
+        }
+        found.push(range);
+        if !path.advance() {
+            return found;
+        }
+    }
+}
+
 /// True if two results are the same number, or both are NaN.
 fn same(a: f64, b: f64) -> bool {
     a.to_bits() == b.to_bits() || (a.is_nan() && b.is_nan())
@@ -124,29 +149,24 @@ proptest! {
         let roots: Vec<NodeId> = graph.ids().collect();
         for root in roots {
             let tape = Tape::new(&graph, &[root]).unwrap();
-            let mut evaluator = tape.prepare::<Interval>(&frame(param));
             let region = ranges.map(|[lo, hi]| Interval::new(lo, hi));
-            let (mut path, mut found) = (BranchPath::default(), Vec::new());
-            loop {
-                let range = evaluator.scalar_along(region, &mut path);
-                if path.fork(4) {
-                    continue;
-                }
-                found.push(range);
-                if !path.advance() {
-                    break;
-                }
-            }
+            let mut intervals = tape.prepare::<Interval>(&frame(param));
+            let along = on_paths(|path| intervals.scalar_along(region, path));
+            let mut forms = tape.prepare::<Affine>(&frame(param));
+            let region = coordinates(ranges);
+            let of_forms = on_paths(|path| forms.scalar_along(region, path).range());
             for fraction in &fractions {
                 let point = [0, 1, 2].map(|i| within(ranges[i], fraction[i]));
                 let values = each_node(&graph, point, param);
                 let Some(Some(value)) = values.get(root.index()) else { continue };
                 let value = value.lanes()[0];
-                prop_assert!(
-                    found.iter().any(|range| range.contains(value)),
-                    "node {} = {:?}: {value} at {point:?}, {param} is on none of {found:?}",
-                    root.index(), graph.node(root),
-                );
+                for found in [&along, &of_forms] {
+                    prop_assert!(
+                        found.iter().any(|range| range.contains(value)),
+                        "node {} = {:?}: {value} at {point:?}, {param} is on none of {found:?}",
+                        root.index(), graph.node(root),
+                    );
+                }
             }
         }
     }
@@ -181,13 +201,7 @@ proptest! {
     ) {
         let graph = graph(&steps);
         let frame = frame(param);
-        let axis = |i: usize| {
-            let [lo, hi] = ranges[i];
-            let mut half = [0.0; 3];
-            half[i] = (0.5 * (hi - lo)).next_up();
-            Affine::coordinate(0.5 * lo + 0.5 * hi, half)
-        };
-        let region = [axis(0), axis(1), axis(2)];
+        let region = coordinates(ranges);
         for root in graph.ids() {
             let tape = Tape::new(&graph, &[root]).unwrap();
             let Some(special) = tape.specialized(&frame, region) else { continue };
