@@ -6,10 +6,11 @@ use rustc_hash::FxHashSet;
 use crate::error::{MeshError, Phase};
 use crate::field::{Frame, LocalField, Prism, Prober, ROUNDING};
 use crate::grid::Grid;
-use crate::nearness::{Clipped, clip, crosses_once, distance};
+use crate::nearness::{Clipped, clip, crosses_once, distance, is_in_box};
 use crate::refine::{OnProgress, report};
 use crate::surface::{Mesh, MeshCertificate};
 use crate::vector::{Vec3, add, between, length, scale, sub, total, unit};
+use crate::wedge::is_wedge;
 
 /// Boxes that are divided between two reports of progress.
 const CHUNK: usize = 1024;
@@ -29,6 +30,9 @@ const ZERO: f64 = 2e-6;
 const TOUCHING: f64 = 4.0;
 /// Faces touch in a box if the field crosses 0 by at most this part of its bounds there.
 const TOUCHING_PART: f64 = 0.01;
+/// Boxes of this size, in errors, are tried for being wrong. Larger ones are divided, because cells
+/// of the mesh about wrong boxes are divided as well.
+const WRONG: f64 = 2.0;
 /// Part of the error that proofs use. The rest covers their rounding.
 const USED: f64 = 1.0 - 1e-6;
 
@@ -213,13 +217,21 @@ impl<'f> Prover<'_, 'f> {
         if few && self.is_sheet(prober, bounds, triangles) == Some(true) {
             return Outcome::Sheet;
         }
+        if few && !is_flat && self.is_wedge(prober, bounds, triangles) {
+            return Outcome::Sheet;
+        }
         if self.is_small(prober, bounds, triangles, is_absent) {
             return Outcome::Small;
         }
         // Where a plane lies in a face of the scene, no box is small enough.
         let is_zero =
             self.grid.is_flat && prober.is_within(&Prism::aligned(bounds), ZERO * self.error);
-        if is_zero || bounds[1][0] - bounds[0][0] <= finest * self.error {
+        let is_smallest = side <= finest * self.error;
+        let may_be_wrong = side <= WRONG * self.error;
+        if is_zero
+            || is_smallest
+            || may_be_wrong && self.is_wrong(prober, bounds, triangles, is_free)
+        {
             return Outcome::Undecided(bounds);
         }
         Outcome::Divided(Task { part, field: field.clone() })
@@ -269,6 +281,38 @@ impl<'f> Prover<'_, 'f> {
             ends[0] < lo && hi < ends[1] && crosses_once(&clipped.triangles, [u, v], ends)
         });
         Some(hi >= end || lo <= -end || is_crossed)
+    }
+
+    /// True if the mesh about the box is nearly two planes with an edge, as the field is.
+    fn is_wedge(&self, prober: &mut Prober<'_>, bounds: [Vec3; 2], triangles: &[u32]) -> bool {
+        let triangles: Vec<_> = triangles.iter().map(|t| self.corners(*t)).collect();
+        is_wedge(prober, bounds, &triangles, USED * self.error)
+    }
+
+    /// True if it is proven that a part of the mesh in the box is farther from the surface than the
+    /// error, or that there is surface in the box and no triangle within the error. No division of
+    /// such a box helps.
+    fn is_wrong(
+        &self,
+        prober: &mut Prober<'_>,
+        bounds: [Vec3; 2],
+        triangles: &[u32],
+        is_free: bool,
+    ) -> bool {
+        if !is_free {
+            let [lo, hi] = bounds;
+            let grown = [lo.map(|x| x - self.error), hi.map(|x| x + self.error)];
+            return prober.side_over(&Prism::aligned(grown)).is_some();
+        }
+        if !triangles.is_empty() {
+            return false;
+        }
+        let middle = between(bounds[0], bounds[1], 0.5);
+        let (_, gradient) = prober.sample(middle);
+        let Some(normal) = unit(gradient) else { return false };
+        let reach = 0.5 * (bounds[1][0] - bounds[0][0]);
+        let sides = [-reach, reach].map(|t| prober.proven_side(add(middle, scale(normal, t))));
+        matches!(sides, [Some(below), Some(above)] if below != above)
     }
 
     /// True if the box is so small that one point of the mesh and both signs near its center serve
@@ -376,9 +420,7 @@ fn meets(corners: [Vec3; 3], bounds: [Vec3; 2], margin: f64) -> bool {
     }
     let middle = between(bounds[0], bounds[1], 0.5);
     let half = sub(bounds[1], middle).map(|half| (half + margin) * (1.0 + 1e-12));
-    let mut clipped = Clipped::default();
-    clip(corners.map(|corner| sub(corner, middle)), half, &mut clipped);
-    clipped.heights.is_some()
+    is_in_box(corners.map(|corner| sub(corner, middle)), half)
 }
 
 /// Returns the eighths of a box; of a flat one the quarters.

@@ -81,6 +81,7 @@ mod simplify;
 mod surface;
 mod tree;
 mod vector;
+mod wedge;
 mod write;
 
 pub use bake::{BakeOptions, DistanceGrid, bake};

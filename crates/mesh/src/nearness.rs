@@ -14,29 +14,9 @@ pub(crate) struct Clipped {
 /// Clipped heights are widened by this part of the box, for rounding.
 const ROUNDING: f64 = 1e-12;
 
-/// Adds a triangle's part within `|x| <= limits` (Sutherland and Hodgman, 1974).
+/// Adds a triangle's part within `|x| <= limits`.
 pub(crate) fn clip(corners: [Vec3; 3], limits: [f64; 3], found: &mut Clipped) {
-    let mut polygon: Vec<Vec3> = corners.to_vec();
-    for axis in 0..3 {
-        for sign in [1.0, -1.0] {
-            let inside = |p: &Vec3| sign * p[axis] <= limits[axis];
-            if polygon.iter().all(inside) {
-                continue;
-            }
-            let mut rest = Vec::with_capacity(polygon.len() + 1);
-            for (index, to) in polygon.iter().enumerate() {
-                let from = polygon[(index + polygon.len() - 1) % polygon.len()];
-                if inside(&from) != inside(to) {
-                    let t = (sign * limits[axis] - from[axis]) / (to[axis] - from[axis]);
-                    rest.push(add(from, scale(sub(*to, from), t)));
-                }
-                if inside(to) {
-                    rest.push(*to);
-                }
-            }
-            polygon = rest;
-        }
-    }
+    let polygon = polygon_in_box(corners, limits);
     if polygon.is_empty() {
         return;
     }
@@ -46,6 +26,54 @@ pub(crate) fn clip(corners: [Vec3; 3], limits: [f64; 3], found: &mut Clipped) {
         found.heights = Some([lo.min(height - margin), hi.max(height + margin)]);
     }
     found.triangles.push(corners);
+}
+
+/// The part of a triangle within `|x| <= limits` (Sutherland and Hodgman, 1974).
+pub(crate) fn polygon_in_box(corners: [Vec3; 3], limits: [f64; 3]) -> Vec<Vec3> {
+    let mut polygon = corners.to_vec();
+    for axis in 0..3 {
+        for sign in [1.0, -1.0] {
+            let beyond = |p: &Vec3| sign * p[axis] - limits[axis];
+            if polygon.iter().any(|p| beyond(p) > 0.0) {
+                polygon = cut(&polygon, beyond);
+            }
+        }
+    }
+    polygon
+}
+
+/// The part of a polygon where a linear function is at most 0.
+pub(crate) fn cut(polygon: &[Vec3], beyond: impl Fn(&Vec3) -> f64) -> Vec<Vec3> {
+    let mut rest = Vec::with_capacity(polygon.len() + 1);
+    for (index, to) in polygon.iter().enumerate() {
+        let from = polygon[(index + polygon.len() - 1) % polygon.len()];
+        let [before, here] = [beyond(&from), beyond(to)];
+        if (before <= 0.0) != (here <= 0.0) {
+            rest.push(add(from, scale(sub(*to, from), before / (before - here))));
+        }
+        if here <= 0.0 {
+            rest.push(*to);
+        }
+    }
+    rest
+}
+
+/// True if a triangle meets the box `|x| <= half`: no axis separates them (T. Akenine-Möller, Fast
+/// 3D Triangle-Box Overlap Testing, 2001). In doubt because of rounding they meet. The axes of the
+/// box are left to the caller.
+pub(crate) fn is_in_box(corners: [Vec3; 3], half: Vec3) -> bool {
+    let [a, b, c] = corners;
+    let edges = [sub(b, a), sub(c, b), sub(a, c)];
+    let size =
+        corners.into_iter().flatten().chain(half).fold(0.0, |most: f64, x| most.max(x.abs()));
+    let separates = |axis: Vec3| {
+        let [x, y, z] = corners.map(|corner| dot(axis, corner));
+        let slopes = axis.map(f64::abs);
+        let reach = dot(slopes, half) + ROUNDING * size * (slopes[0] + slopes[1] + slopes[2]);
+        x.min(y).min(z) > reach || x.max(y).max(z) < -reach
+    };
+    let across = |[x, y, z]: Vec3| [[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]];
+    !separates(cross(edges[0], edges[1])) && !edges.into_iter().flat_map(across).any(separates)
 }
 
 /// True if a line along the first axis, between two heights, crosses the triangles an odd number
@@ -108,4 +136,36 @@ fn to_segment(point: Vec3, a: Vec3, b: Vec3) -> f64 {
     let t = (dot(sub(point, a), along) / dot(along, along)).clamp(0.0, 1.0);
     let t = if t.is_nan() { 0.0 } else { t };
     length(sub(point, add(a, scale(along, t))))
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        #[test]
+        fn a_triangle_is_in_a_box_if_its_clipped_part_is_not_empty(
+            corners in prop::array::uniform3(prop::array::uniform3(-3.0..3.0)),
+            half in prop::array::uniform3(0.01..2.0),
+        ) {
+            let is_clipped = |by: f64| {
+                let mut found = Clipped::default();
+                clip(corners, half.map(|x: f64| by * x), &mut found);
+                found.heights.is_some()
+            };
+            let ends = |axis: usize| {
+                let [a, b, c] = corners.map(|corner: Vec3| corner[axis]);
+                [a.min(b).min(c), a.max(b).max(c)]
+            };
+            let is_beside = |axis: usize| {
+                let [least, most] = ends(axis);
+                least > half[axis] || most < -half[axis]
+            };
+            let found = is_in_box(corners, half) && !(0..3).any(is_beside);
+            prop_assert!(found || !is_clipped(1.0 - 1e-9));
+            prop_assert!(!found || is_clipped(1.0 + 1e-9));
+        }
+    }
 }
