@@ -231,12 +231,10 @@ impl<T: Real> Walk<T> {
     /// The next position between one outside and one inside, once there are both.
     fn false_position(&self, hit: T) -> Option<Next<T>> {
         let ((last, above), (first, below)) = (self.outside?, self.inside?);
-        if first - last < hit {
-            return Some(Next::Hit(first));
-        }
         // The zero of a line through both samples, but within the middle 8 tenths.
         let part = above.div(above - below).clamp(T::constant(0.1), T::constant(0.9));
-        Some(Next::At(last + part * (first - last)))
+        let next = last + part * (first - last);
+        Some(if first - last < hit { Next::Hit(next) } else { Next::At(next) })
     }
 }
 
