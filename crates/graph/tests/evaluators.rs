@@ -32,8 +32,13 @@ fn within([lo, hi]: [f64; 2], fraction: f64) -> f64 {
     (lo + (hi - lo) * ((fraction - 0.1) / 0.8).clamp(0.0, 1.0)).clamp(lo, hi)
 }
 
-/// A box as affine forms.
-fn boxed(ranges: [[f64; 2]; 3]) -> [Affine; 3] {
+fn frame<N: Number>(param: N) -> FrameValues<N> {
+    let zero = N::constant(0.0);
+    FrameValues { params: vec![[param; 4]], time: zero, frame: zero }
+}
+
+/// The coordinates of the points of a box.
+fn coordinates(ranges: [[f64; 2]; 3]) -> [Affine; 3] {
     [0, 1, 2].map(|i| {
         let [lo, hi] = ranges[i];
         let mut half = [0.0; 3];
@@ -42,9 +47,19 @@ fn boxed(ranges: [[f64; 2]; 3]) -> [Affine; 3] {
     })
 }
 
-fn frame<N: Number>(param: N) -> FrameValues<N> {
-    let zero = N::constant(0.0);
-    FrameValues { params: vec![[param; 4]], time: zero, frame: zero }
+/// The ranges of a field over a box, on each path through its jumps.
+fn on_paths(mut range_along: impl FnMut(&mut BranchPath) -> Interval) -> Vec<Interval> {
+    let (mut path, mut found) = (BranchPath::default(), Vec::new());
+    loop {
+        let range = range_along(&mut path);
+        if path.fork(4) {
+            continue;
+        }
+        found.push(range);
+        if !path.advance() {
+            return found;
+        }
+    }
 }
 
 /// True if two results are the same number, or both are NaN.
@@ -128,9 +143,9 @@ proptest! {
         let defined: Vec<_> = points.iter().map(|&p| each_node(&graph, p, param)).collect();
         for root in graph.ids() {
             let tape = Tape::new(&graph, &[root]).unwrap();
-            let region = boxed(ranges).map(|side| side.range());
+            let region = coordinates(ranges).map(|side| side.range());
             let Some(bounds) = tape.gradient_over(&frame, region) else { continue };
-            let range = tape.prepare::<Affine>(&frame).scalar(boxed(ranges)).range();
+            let range = tape.prepare::<Affine>(&frame).scalar(coordinates(ranges)).range();
             let mut field = tape.prepare::<f64>(&frame);
             for (pair, nodes) in points.windows(2).zip(defined.windows(2)) {
                 // Nothing is known of a field that is undefined somewhere in the box.
@@ -204,29 +219,24 @@ proptest! {
         let roots: Vec<NodeId> = graph.ids().collect();
         for root in roots {
             let tape = Tape::new(&graph, &[root]).unwrap();
-            let mut evaluator = tape.prepare::<Interval>(&frame(param));
             let region = ranges.map(|[lo, hi]| Interval::new(lo, hi));
-            let (mut path, mut found) = (BranchPath::default(), Vec::new());
-            loop {
-                let range = evaluator.scalar_along(region, &mut path);
-                if path.fork(4) {
-                    continue;
-                }
-                found.push(range);
-                if !path.advance() {
-                    break;
-                }
-            }
+            let mut intervals = tape.prepare::<Interval>(&frame(param));
+            let along = on_paths(|path| intervals.scalar_along(region, path));
+            let mut forms = tape.prepare::<Affine>(&frame(param));
+            let region = coordinates(ranges);
+            let of_forms = on_paths(|path| forms.scalar_along(region, path).range());
             for fraction in &fractions {
                 let point = [0, 1, 2].map(|i| within(ranges[i], fraction[i]));
                 let values = each_node(&graph, point, param);
                 let Some(Some(value)) = values.get(root.index()) else { continue };
                 let value = value.lanes()[0];
-                prop_assert!(
-                    found.iter().any(|range| range.contains(value)),
-                    "node {} = {:?}: {value} at {point:?}, {param} is on none of {found:?}",
-                    root.index(), graph.node(root),
-                );
+                for found in [&along, &of_forms] {
+                    prop_assert!(
+                        found.iter().any(|range| range.contains(value)),
+                        "node {} = {:?}: {value} at {point:?}, {param} is on none of {found:?}",
+                        root.index(), graph.node(root),
+                    );
+                }
             }
         }
     }
@@ -261,7 +271,7 @@ proptest! {
     ) {
         let graph = graph(&steps);
         let frame = frame(param);
-        let region = boxed(ranges);
+        let region = coordinates(ranges);
         for root in graph.ids() {
             let tape = Tape::new(&graph, &[root]).unwrap();
             let Some(special) = tape.specialized(&frame, region) else { continue };

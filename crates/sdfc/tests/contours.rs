@@ -115,6 +115,14 @@ const CASES: &[(&str, [f64; 3], f64, usize, bool)] = &[
     ("cone(0.5, 1)", [0.0, 0.0, 1.0], 0.0, 1, true),
     ("sphere(1) | sphere(1).translate(x: 2)", [0.0, 0.0, 1.0], 0.0, 1, false),
     ("sphere(1).translate(x: 1000000)", [0.0, 0.0, 1.0], 0.1, 1, true),
+    ("sphere(0.1).translate(x: 0.7).polar_repeat(8)", [0.0, 1.0, 0.0], 0.0, 8, true),
+    (
+        "cylinder(r: 1, h: 0.2) - cylinder(r: 0.1, h: 1).translate(x: 0.7).polar_repeat(5)",
+        [0.0, 1.0, 0.0],
+        0.0,
+        6,
+        true,
+    ),
     (
         "box([0.5, 0.5, 0.5]).limited_repeat(spacing: 1, count: [3, 3, 3])",
         [0.0, 0.0, 1.0],

@@ -131,7 +131,7 @@ operations!(define_op);
 impl Op {
     /// True if the result can jump where the arguments do not. A tracer sees these operations.
     pub(crate) fn jumps(self) -> bool {
-        self.is_whole() || matches!(self, Self::Atan2 | Self::NormalizeLane)
+        self.is_whole() || matches!(self, Self::Atan2 | Self::NormalizeLane | Self::Select)
     }
 
     /// True if the result is a whole number or a truth value.

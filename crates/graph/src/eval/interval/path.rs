@@ -123,6 +123,10 @@ impl Tracer<Interval> for &mut BranchPath {
         if op == Op::Atan2 && a.contains(0.0) && b.hi < 0.0 {
             return self.on_one_side(a, b, result);
         }
+        // What is selected depends on a comparison, which is decided.
+        if op == Op::Select {
+            return result;
+        }
         if !op.is_whole() {
             // At the zero vector, which has no direction.
             let cut = b.lo <= 0.0 && (op != Op::Atan2 || a.contains(0.0));
@@ -142,11 +146,15 @@ impl Tracer<Interval> for &mut BranchPath {
 }
 
 impl BranchPath {
-    /// The angle of a vector on one side of the branch cut: a choice of two.
+    /// The angle of a vector on one side of the branch cut.
     fn on_one_side(&mut self, y: Interval, x: Interval, result: Interval) -> Interval {
-        let [below, above] = Interval::angles_at_cut(y, x);
-        let taken = self.decision(Interval { lo: 0.0, hi: 1.0 });
-        taken.map_or(result, |taken| if taken == 0.0 { below } else { above })
+        self.one_of(Interval::angles_at_cut(y, x)).unwrap_or(result)
+    }
+
+    /// The chosen one of two results; `None` if it is not decided.
+    pub(in crate::eval) fn one_of(&mut self, [first, second]: [Interval; 2]) -> Option<Interval> {
+        let taken = self.decision(Interval { lo: 0.0, hi: 1.0 })?;
+        Some(if taken == 0.0 { first } else { second })
     }
 
     /// The chosen one of several results; `None` if it is not decided.
