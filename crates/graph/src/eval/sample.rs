@@ -67,7 +67,8 @@ impl Tape {
     /// let bounds = tape.gradient_over(&FrameValues::default(), [x, y, y]);
     /// let [by_x, by_y, by_z] = bounds.expect("it is smooth, but for a kink");
     /// assert!(by_x.lo() > 1.99 && by_x.hi() < 6.01);
-    /// assert_eq!([by_y.lo(), by_y.hi(), by_z.lo(), by_z.hi()], [-1.0, 1.0, 0.0, 0.0]);
+    /// assert!(by_y.lo() < -0.99 && by_y.hi() > 0.99 && by_y.hi() < 1.01);
+    /// assert!(by_z.contains(0.0) && by_z.hi() < 0.01);
     /// # Ok::<(), sdfc_graph::eval::TapeError>(())
     /// ```
     pub fn gradient_over(
