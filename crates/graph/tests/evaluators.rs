@@ -105,6 +105,76 @@ proptest! {
     }
 
     #[test]
+    fn points_evaluated_together_have_the_same_values(
+        steps in steps(40),
+        points in prop::collection::vec(prop::array::uniform3(coordinate()), 1..12),
+        param in coordinate(),
+    ) {
+        let graph = graph(&steps);
+        let root = graph.ids().last().unwrap();
+        let tape = Tape::new(&graph, &[root]).unwrap();
+        let mut one = tape.prepare::<f64>(&frame(param));
+        let mut wide = tape.prepare_wide::<Packet<f64, 2>>(&frame(param), 3);
+        let packets: Vec<_> =
+            points.iter().map(|point| point.map(|x| Packet([x, x + 1.0]))).collect();
+        let mut values = vec![Packet([0.0; 2]); packets.len()];
+        wide.scalars(&packets, &mut values);
+        for (point, Packet(pair)) in points.iter().zip(values) {
+            let expected = [*point, point.map(|x| x + 1.0)].map(|point| one.scalar(point));
+            let is_same = same(pair[0], expected[0]) && same(pair[1], expected[1]);
+            prop_assert!(is_same, "{pair:?} is not {expected:?}");
+        }
+    }
+
+    /// A field changes between two points of a box by no more than bounds of its gradient allow.
+    #[test]
+    fn gradient_bounds_contain_every_difference(
+        steps in steps(24),
+        ranges in prop::array::uniform3(range()),
+        param in coordinate(),
+        fractions in prop::collection::vec(prop::array::uniform3(0.0..1.0), 12),
+    ) {
+        let graph = graph(&steps);
+        let frame = frame(param);
+        let points: Vec<[f64; 3]> = fractions
+            .iter()
+            .map(|fraction| [0, 1, 2].map(|i| within(ranges[i], fraction[i])))
+            .collect();
+        let defined: Vec<_> = points.iter().map(|&p| each_node(&graph, p, param)).collect();
+        for root in graph.ids() {
+            let tape = Tape::new(&graph, &[root]).unwrap();
+            let region = coordinates(ranges).map(|side| side.range());
+            let Some(bounds) = tape.gradient_over(&frame, region) else { continue };
+            let range = tape.prepare::<Affine>(&frame).scalar(coordinates(ranges)).range();
+            let mut field = tape.prepare::<f64>(&frame);
+            for (pair, nodes) in points.windows(2).zip(defined.windows(2)) {
+                // Nothing is known of a field that is undefined somewhere in the box.
+                let is_defined = |nodes: &Vec<Option<_>>| {
+                    nodes[..=root.index()].iter().all(Option::is_some)
+                };
+                if !nodes.iter().all(is_defined) || !(range.hi() - range.lo()).is_finite() {
+                    continue;
+                }
+                let change = field.scalar(pair[1]) - field.scalar(pair[0]);
+                let allowed = (0..3).fold(Interval::constant(0.0), |sum, axis| {
+                    let step = Interval::constant(pair[1][axis] - pair[0][axis]);
+                    sum.add(bounds[axis].mul(step))
+                });
+                let lanes = nodes.iter().flat_map(|nodes| &nodes[..=root.index()]).flatten();
+                let sizes = lanes.flat_map(|value| value.lanes()).map(|lane| lane.abs());
+                // A node may subtract products of its operands.
+                let size = sizes.fold(0.0, |most: f64, size| most.max(size).max(size * size));
+                let rounding = Interval::new(-1e-9 * size, 1e-9 * size);
+                prop_assert!(
+                    allowed.add(rounding).contains(change),
+                    "node {} = {:?}: {change} from {:?} to {:?} is not in {allowed:?}: {bounds:?}",
+                    root.index(), graph.node(root), pair[0], pair[1],
+                );
+            }
+        }
+    }
+
+    #[test]
     fn intervals_contain_every_sample(
         steps in steps(24),
         ranges in prop::array::uniform3(range()),

@@ -239,6 +239,10 @@ fn check(case: &Case, at: [f64; 3], param: f64) {
     let half = tape.prepare::<f32>(&frame).eval(narrow.map(|x| x * 0.5)).to_vec();
     let expected = [values[0][0], half[0][0]];
     assert_eq!(packets[0][0].0.map(f32::to_bits), expected.map(f32::to_bits), "{name} in packets");
+    let mut wide = [Packet([0.0; 2]); 3];
+    tape.prepare_wide(&frame, 2).scalars(&[pair, narrow.map(|x| Packet([x; 2])), pair], &mut wide);
+    assert_eq!(wide[0], packets[0][0], "{name}, wide");
+    assert_eq!(wide[1], Packet([values[0][0]; 2]), "{name}, wide");
 }
 
 /// Tests that values at points of a box lie in the range over the box.

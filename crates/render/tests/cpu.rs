@@ -422,7 +422,7 @@ fn rays_out_of_steps_are_capped() {
 fn a_ray_whose_steps_end_before_a_proof_is_unproven() {
     let mut program = common::sphere().with_segment_bounds(true, false);
     program.settings.march.steps = Some(1);
-    let image = draw(&program, [32, 32], Method::Interval, TileSize::default()).image;
+    let image = depths::<f32>(&program, [32, 32], Method::Interval);
     let misses: Vec<_> = image.pixels().iter().filter(|pixel| pixel.status == MISS).collect();
     let unproven = misses.iter().filter(|pixel| pixel.unproven != 0).count();
     assert!(unproven > 50, "{unproven} misses are unproven");

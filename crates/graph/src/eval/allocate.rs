@@ -31,7 +31,10 @@ impl Recorder {
             .iter()
             .map(|lanes| Lanes::new(lanes.as_slice().len(), |i| locations[lanes.get(i) as usize]))
             .collect();
-        Tape { prelude, kept, body, lists: std::mem::take(&mut self.lists), registers, outputs }
+        let (operations, lists) = (operations(&body), std::mem::take(&mut self.lists));
+        let is_constant =
+            prelude.iter().all(|definition| matches!(definition, Definition::Constant(_)));
+        Tape { prelude, is_constant, kept, body, operations, lists, registers, outputs }
     }
 
     fn liveness(&self, outputs: &[Lanes<u32>]) -> Liveness {
@@ -158,12 +161,7 @@ impl Recorder {
                     registers.free.append(&mut released);
                     let result = registers.take();
                     locations[value] = result;
-                    let instruction = Instruction { op, result, arguments };
-                    if op.jumps() {
-                        push(&mut bodies, Code::Jump(instruction));
-                    } else {
-                        append(&mut bodies, instruction);
-                    }
+                    append(&mut bodies, Instruction { op, result, arguments });
                 }
                 Definition::Lookup(list, at) => {
                     let at = locations[at as usize];
@@ -256,6 +254,18 @@ fn append(bodies: &mut [Vec<Code>], instruction: Instruction) {
     } else {
         body.push(Code::Straight(vec![instruction]));
     }
+}
+
+/// Number of operations, if all loops run for as many iterations as they may.
+fn operations(body: &[Code]) -> usize {
+    let of = |code: &Code| match code {
+        Code::Straight(instructions) => instructions.len(),
+        Code::Lookup { .. } | Code::Test(_) => 1,
+        Code::Loop(code) => {
+            (code.max_iterations as usize).saturating_mul(operations(&code.body) + 1)
+        }
+    };
+    body.iter().map(of).fold(0, usize::saturating_add)
 }
 
 impl RecordedLoop {

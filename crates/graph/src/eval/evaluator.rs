@@ -4,8 +4,9 @@ use super::affine::Affine;
 use super::frame::FrameValues;
 use super::interval::{BranchPath, Interval};
 use super::number::Number;
+use super::registers::Registers;
 use super::scalarise::Lanes;
-use super::tape::{Code, Definition, Instruction, LoopCode, POINT_LANES, Tape};
+use super::tape::{Definition, POINT_LANES, Tape};
 use super::tracer::{NoTrace, Tracer};
 
 impl Tape {
@@ -21,17 +22,52 @@ impl Tape {
         self.evaluator(frame, |value| value)
     }
 
+    /// An evaluator for a frame that computes up to `width` numbers with each instruction, see
+    /// [`Evaluator::scalars`].
+    pub fn prepare_wide<N: Number>(&self, frame: &FrameValues, width: usize) -> Evaluator<'_, N> {
+        self.prepare_in_buffer(frame, width, Vec::new())
+    }
+
+    /// As [`Self::prepare_wide`], with the memory of another evaluator.
+    pub fn prepare_in_buffer<N: Number>(
+        &self,
+        frame: &FrameValues,
+        width: usize,
+        buffer: Vec<N>,
+    ) -> Evaluator<'_, N> {
+        self.wide_evaluator(frame, N::constant, width.max(1), buffer)
+    }
+
     /// An evaluator for a frame, whose values are computed in one number type and then converted.
     pub(super) fn evaluator<F: Number, N: Number>(
         &self,
         frame: &FrameValues<F>,
         convert: impl Fn(F) -> N,
     ) -> Evaluator<'_, N> {
+        self.wide_evaluator(frame, convert, 1, Vec::new())
+    }
+
+    fn wide_evaluator<F: Number, N: Number>(
+        &self,
+        frame: &FrameValues<F>,
+        convert: impl Fn(F) -> N,
+        width: usize,
+        mut numbers: Vec<N>,
+    ) -> Evaluator<'_, N> {
         let zero = N::constant(0.0);
-        let mut registers = vec![zero; self.registers];
-        for (register, value) in registers.iter_mut().zip(self.kept_values(frame)) {
-            *register = convert(value);
+        numbers.resize(self.registers * width, zero);
+        let registers = numbers.chunks_exact_mut(width);
+        if self.is_constant {
+            for (register, &value) in registers.zip(&self.kept) {
+                let Definition::Constant(value) = self.prelude[value as usize] else { continue };
+                register.fill(convert(F::constant(value)));
+            }
+        } else {
+            for (register, value) in registers.zip(self.kept_values(frame)) {
+                register.fill(convert(value));
+            }
         }
+        let registers = Registers { numbers, width, used: 1 };
         Evaluator { tape: self, registers, outputs: vec![[zero; 4]; self.outputs.len()] }
     }
 
@@ -61,12 +97,12 @@ impl Tape {
     }
 }
 
-/// A tape with its registers, ready for the points of one frame. Evaluating allocates nothing. Each
-/// thread uses its own clone.
+/// A tape with its registers, ready for the points of one frame. Evaluating allocates nothing, but
+/// for loops. Each thread uses its own clone.
 #[derive(Clone, Debug)]
 pub struct Evaluator<'t, N> {
     tape: &'t Tape,
-    registers: Vec<N>,
+    registers: Registers<N>,
     outputs: Vec<[N; 4]>,
 }
 
@@ -94,7 +130,7 @@ impl<N: Number> Evaluator<'_, N> {
     fn read(&mut self) -> &[[N; 4]] {
         for (output, lanes) in self.outputs.iter_mut().zip(&self.tape.outputs) {
             for (entry, &register) in output.iter_mut().zip(lanes.as_slice()) {
-                *entry = self.registers[register as usize];
+                *entry = self.registers.get(register);
             }
         }
         &self.outputs
@@ -110,7 +146,7 @@ impl<N: Number> Evaluator<'_, N> {
         let of = |lanes: &Lanes<u32>| {
             let mut values = [N::constant(0.0); 4];
             for (value, &register) in values.iter_mut().zip(lanes.as_slice()) {
-                *value = self.registers[register as usize];
+                *value = self.registers.get(register);
             }
             values
         };
@@ -123,19 +159,67 @@ impl<N: Number> Evaluator<'_, N> {
         self.first()
     }
 
+    /// The first lane of the first root at points, in their order; 0 without roots. Each
+    /// instruction is decoded once for as many points as the evaluator is wide.
+    ///
+    /// ```
+    /// use sdfc_graph::eval::{FrameValues, Packet, Tape};
+    /// use sdfc_graph::{Dim, Graph};
+    ///
+    /// let mut graph = Graph::new();
+    /// let point = graph.point(0, Dim::Three);
+    /// let root = graph.length(point);
+    /// let tape = Tape::new(&graph, &[root])?;
+    /// let points = [1.0, 2.0, 3.0].map(|x| [x, 0.0, 0.0].map(|x| Packet([x, -2.0 * x])));
+    ///
+    /// let mut lengths = [Packet([0.0f32; 2]); 3];
+    /// let mut evaluator = tape.prepare_wide(&FrameValues::default(), 2);
+    /// evaluator.scalars(&points, &mut lengths);
+    /// assert_eq!(lengths, [Packet([1.0, 2.0]), Packet([2.0, 4.0]), Packet([3.0, 6.0])]);
+    /// # Ok::<(), sdfc_graph::eval::TapeError>(())
+    /// ```
+    pub fn scalars(&mut self, points: &[[N; 3]], values: &mut [N]) {
+        let width = self.registers.width;
+        let kept = self.tape.kept.len() * width;
+        for (points, values) in points.chunks(width).zip(values.chunks_mut(width)) {
+            let lanes = &mut self.registers.numbers[kept..];
+            for (axis, register) in lanes.chunks_exact_mut(width).take(POINT_LANES).enumerate() {
+                for (number, point) in register.iter_mut().zip(points) {
+                    *number = point[axis];
+                }
+            }
+            self.registers.used = points.len();
+            self.run_body(&mut NoTrace);
+            let first = self.tape.outputs.first().map(|lanes| lanes.get(0) as usize * width);
+            for (k, value) in values.iter_mut().enumerate() {
+                *value = first.map_or(N::constant(0.0), |first| self.registers.numbers[first + k]);
+            }
+        }
+    }
+
+    /// The memory of the registers, for [`Tape::prepare_in_buffer`].
+    pub fn into_buffer(self) -> Vec<N> {
+        self.registers.numbers
+    }
+
     fn first(&self) -> N {
         let first = self.tape.outputs.first();
-        first.map_or(N::constant(0.0), |lanes| self.registers[lanes.get(0) as usize])
+        first.map_or(N::constant(0.0), |lanes| self.registers.get(lanes.get(0)))
     }
 
     fn run(&mut self, points: &[[N; POINT_LANES]], tracer: &mut impl Tracer<N>) {
-        let registers = self.registers.as_mut_slice();
-        let lanes = registers[self.tape.kept.len()..].iter_mut();
-        for (register, &lane) in lanes.zip(points.as_flattened()) {
-            *register = lane;
+        let width = self.registers.width;
+        self.registers.used = 1;
+        let registers = self.registers.numbers.chunks_exact_mut(width).skip(self.tape.kept.len());
+        for (register, &lane) in registers.zip(points.as_flattened()) {
+            register[0] = lane;
         }
+        self.run_body(tracer);
+    }
+
+    fn run_body(&mut self, tracer: &mut impl Tracer<N>) {
         for code in &self.tape.body {
-            code.run(registers, &self.tape.lists, tracer);
+            code.run(&mut self.registers, &self.tape.lists, tracer);
         }
     }
 }
@@ -157,76 +241,5 @@ impl Evaluator<'_, Affine> {
         path.begin();
         self.run(&[point], &mut { path });
         self.first()
-    }
-}
-
-impl Code {
-    /// Runs the code; returns the condition if this is a test.
-    fn run<N: Number>(
-        &self,
-        registers: &mut [N],
-        lists: &[Vec<f64>],
-        tracer: &mut impl Tracer<N>,
-    ) -> Option<N> {
-        match self {
-            Self::Straight(instructions) => {
-                for instruction in instructions {
-                    let result =
-                        instruction.op.apply(|i| registers[instruction.arguments[i] as usize]);
-                    registers[instruction.result as usize] = result;
-                }
-            }
-            Self::Jump(Instruction { op, result, arguments }) => {
-                let arguments = arguments.map(|argument| registers[argument as usize]);
-                let value = op.apply(|i| arguments[i]);
-                registers[*result as usize] = tracer.jumped(*op, arguments, value);
-            }
-            Self::Lookup { list, at, result } => {
-                registers[*result as usize] = registers[*at as usize].element(&lists[*list]);
-            }
-            Self::Test(condition) => return Some(registers[*condition as usize]),
-            Self::Loop(code) => code.run(registers, lists, tracer),
-        }
-        None
-    }
-}
-
-impl LoopCode {
-    /// Runs iterations until no more can follow. Where the number type cannot decide whether one
-    /// follows, the variables go on, and the result covers both their old and their new value.
-    fn run<N: Number>(&self, registers: &mut [N], lists: &[Vec<f64>], tracer: &mut impl Tracer<N>) {
-        for state in &self.state {
-            let init = registers[state.init as usize];
-            registers[state.variable as usize] = init;
-            registers[state.result as usize] = init;
-        }
-        let mut running = N::constant(1.0);
-        for index in 0..self.max_iterations {
-            let index = N::constant(f64::from(index));
-            registers[self.index as usize] = index;
-            if let Some(count) = self.count {
-                running = running.and(index.lt(registers[count as usize]));
-                if running.is_definitely_false() {
-                    return;
-                }
-            }
-            for code in &self.body {
-                if let Some(condition) = code.run(registers, lists, tracer) {
-                    running = running.and(condition);
-                    if running.is_definitely_false() {
-                        return;
-                    }
-                }
-            }
-            for state in &self.state {
-                registers[state.copy as usize] = registers[state.step as usize];
-            }
-            for state in &self.state {
-                let step = registers[state.copy as usize];
-                registers[state.variable as usize] = step;
-                let before = registers[state.result as usize];
-                registers[state.result as usize] = running.select(step, before);
-            }
-        }
     }
 }

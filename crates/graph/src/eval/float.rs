@@ -11,20 +11,20 @@ use super::hash::hash;
 macro_rules! float {
     ($float:ident, pow: $pow:path, atan2: $atan2:path, $($name:ident: $unary:path),* $(,)?) => {
         impl Number for $float {
-            #[inline]
+            #[inline(always)]
             fn constant(value: f64) -> Self {
                 value as Self
             }
 
-            #[inline]
+            #[inline(always)]
             fn neg(self) -> Self {
                 -self
             }
-            #[inline]
+            #[inline(always)]
             fn abs(self) -> Self {
                 self.abs()
             }
-            #[inline]
+            #[inline(always)]
             fn sign(self) -> Self {
                 if self > 0.0 {
                     1.0
@@ -34,137 +34,138 @@ macro_rules! float {
                     self * 0.0
                 }
             }
-            #[inline]
+            #[inline(always)]
             fn floor(self) -> Self {
                 self.floor()
             }
-            #[inline]
+            #[inline(always)]
             fn ceil(self) -> Self {
                 self.ceil()
             }
-            #[inline]
+            #[inline(always)]
             fn round(self) -> Self {
                 self.round_ties_even()
             }
-            #[inline]
+            #[inline(always)]
             fn trunc(self) -> Self {
                 self.trunc()
             }
-            #[inline]
+            #[inline(always)]
             fn square(self) -> Self {
                 self * self
             }
-            #[inline]
+            #[inline(always)]
             fn sqrt(self) -> Self {
                 self.sqrt()
             }
-            #[inline]
+            #[inline(always)]
             fn inverse_sqrt(self) -> Self {
                 1.0 / self.sqrt()
             }
             $(
-                #[inline]
+                #[inline(always)]
                 fn $name(self) -> Self {
                     $unary(self)
                 }
             )*
-            #[inline]
+            #[inline(always)]
             fn not(self) -> Self {
                 1.0 - self
             }
 
-            #[inline]
+            #[inline(always)]
             fn add(self, y: Self) -> Self {
                 self + y
             }
-            #[inline]
+            #[inline(always)]
             fn sub(self, y: Self) -> Self {
                 self - y
             }
-            #[inline]
+            #[inline(always)]
             fn mul(self, y: Self) -> Self {
                 self * y
             }
-            #[inline]
+            #[inline(always)]
             fn div(self, y: Self) -> Self {
                 self / y
             }
-            #[inline]
+            #[inline(always)]
             fn min(self, y: Self) -> Self {
                 if y < self { y } else { self }
             }
-            #[inline]
+            #[inline(always)]
             fn max(self, y: Self) -> Self {
                 if y > self { y } else { self }
             }
-            #[inline]
+            #[inline(always)]
             fn pow(self, y: Self) -> Self {
                 if self < 0.0 { Self::NAN } else { $pow(self + 0.0, y) }
             }
-            #[inline]
+            #[inline(always)]
             fn atan2(self, x: Self) -> Self {
                 $atan2(self + 0.0, x + 0.0) // turns -0 into 0
             }
-            #[inline]
+            #[inline(always)]
             fn step(self, x: Self) -> Self {
                 truth(x >= self)
             }
-            #[inline]
+            #[inline(always)]
             fn hash(self, x: Self) -> Self {
                 hash(self.into(), x.into()) as Self
             }
-            #[inline]
+            #[inline(always)]
             fn normalize_lane(self, length: Self) -> Self {
                 if length == 0.0 { 0.0 } else { self / length }
             }
-            #[inline]
+            #[inline(always)]
             fn lt(self, y: Self) -> Self {
                 truth(self < y)
             }
-            #[inline]
+            #[inline(always)]
             fn le(self, y: Self) -> Self {
                 truth(self <= y)
             }
-            #[inline]
+            #[inline(always)]
             fn eq(self, y: Self) -> Self {
                 truth(self == y)
             }
-            #[inline]
+            #[inline(always)]
             fn ne(self, y: Self) -> Self {
                 truth(self != y)
             }
-            #[inline]
+            #[inline(always)]
             fn and(self, y: Self) -> Self {
                 self * y
             }
-            #[inline]
+            #[inline(always)]
             fn or(self, y: Self) -> Self {
                 Number::max(self, y)
             }
 
-            #[inline]
+            #[inline(always)]
             fn is_definitely_false(self) -> bool {
                 self == 0.0
             }
+            #[inline(always)]
             fn element(self, list: &[f64]) -> Self {
                 let last = list.len().saturating_sub(1);
                 let at = (self.max(0.0) as usize).min(last);
                 list.get(at).map_or(Self::NAN, |&value| value as Self)
             }
-            #[inline]
+            #[inline(always)]
             fn mix(self, y: Self, t: Self) -> Self {
                 self * (1.0 - t) + y * t
             }
-            #[inline]
+            #[inline(always)]
             fn clamp(self, lo: Self, hi: Self) -> Self {
                 Number::min(Number::max(self, lo), hi)
             }
-            #[inline]
+            #[inline(always)]
             fn smoothstep(self, hi: Self, x: Self) -> Self {
                 let t = ((x - self) / (hi - self + 0.0)).saturate();
                 t * t * (3.0 - 2.0 * t)
             }
-            #[inline]
+            #[inline(always)]
             fn select(self, yes: Self, no: Self) -> Self {
                 if self != 0.0 { yes } else { no }
             }
@@ -213,7 +214,7 @@ float!(
 );
 
 /// 1 for true, 0 for false.
-#[inline]
+#[inline(always)]
 fn truth<F: From<bool>>(holds: bool) -> F {
     F::from(holds)
 }

@@ -50,11 +50,13 @@ mod number;
 mod op;
 mod packet;
 mod record;
+mod registers;
 mod sample;
 mod scalarise;
 mod specialize;
 mod tape;
 mod tracer;
+mod vectors;
 
 pub use affine::Affine;
 pub use dual::Dual;
@@ -69,3 +71,4 @@ pub use packet::Packet;
 pub use sample::{FieldSample, evaluate_frame, sample_field};
 pub use specialize::{FieldOver, RootsOver};
 pub use tape::{Tape, TapeError};
+pub use vectors::vectorized;

@@ -7,6 +7,9 @@
 /// number type documents what it returns there. Where WGSL leaves a result open, the rule stated
 /// here holds on the CPU.
 pub trait Number: Copy {
+    /// True if operations consist of vector instructions, which depend on the CPU.
+    const HAS_VECTORS: bool = false;
+
     /// The number nearest to a constant.
     fn constant(value: f64) -> Self;
 
@@ -105,6 +108,13 @@ pub trait Number: Copy {
 
     /// True if this truth value is certainly false, so that a loop with this condition ends.
     fn is_definitely_false(self) -> bool;
+
+    /// The derivative of a value that is constant between jumps: 0. Bounds that contain several
+    /// values have no bounds of the derivative.
+    #[inline(always)]
+    fn jump_slope(self) -> Self {
+        Self::constant(0.0)
+    }
 
     /// The element of a list at an index, which is rounded down and clamped to the list
     fn element(self, list: &[f64]) -> Self;

@@ -98,6 +98,30 @@ macro_rules! define_op {
                     $(Self::$ternary => argument(0).$ternary_method(argument(1), argument(2)),)*
                 }
             }
+
+            /// Applies the operation `count` times: to the numbers from the indices `arguments` on,
+            /// with the results from `result` on.
+            #[inline(always)]
+            pub(crate) fn apply_all<N: Number>(
+                self,
+                numbers: &mut [N],
+                result: usize,
+                [a, b, c]: [usize; 3],
+                count: usize,
+            ) {
+                match self {
+                    $(Self::$unary => for k in 0..count {
+                        numbers[result + k] = numbers[a + k].$unary_method();
+                    })*
+                    $(Self::$binary => for k in 0..count {
+                        numbers[result + k] = numbers[a + k].$binary_method(numbers[b + k]);
+                    })*
+                    $(Self::$ternary => for k in 0..count {
+                        let (x, y, z) = (numbers[a + k], numbers[b + k], numbers[c + k]);
+                        numbers[result + k] = x.$ternary_method(y, z);
+                    })*
+                }
+            }
         }
     };
 }

@@ -31,21 +31,27 @@ macro_rules! lanewise {
         ternary { $($ternary:ident)* }
     ) => {
         impl<N: Number, const B: usize> Number for Packet<N, B> {
-            #[inline]
+            const HAS_VECTORS: bool = true;
+
+            #[inline(always)]
             fn constant(value: f64) -> Self {
                 Self([N::constant(value); B])
             }
-            #[inline]
+            #[inline(always)]
             fn is_definitely_false(self) -> bool {
                 self.0.into_iter().all(N::is_definitely_false)
             }
-            #[inline]
+            #[inline(always)]
             fn element(self, list: &[f64]) -> Self {
                 self.map(|at| at.element(list))
             }
-            $(#[inline] fn $unary(self) -> Self { self.map(N::$unary) })*
-            $(#[inline] fn $binary(self, y: Self) -> Self { self.map2(y, N::$binary) })*
-            $(#[inline] fn $ternary(self, y: Self, z: Self) -> Self { self.map3(y, z, N::$ternary) })*
+            #[inline(always)]
+            fn jump_slope(self) -> Self {
+                self.map(N::jump_slope)
+            }
+            $(#[inline(always)] fn $unary(self) -> Self { self.map(N::$unary) })*
+            $(#[inline(always)] fn $binary(self, y: Self) -> Self { self.map2(y, N::$binary) })*
+            $(#[inline(always)] fn $ternary(self, y: Self, z: Self) -> Self { self.map3(y, z, N::$ternary) })*
         }
     };
 }

@@ -9,7 +9,6 @@ use crate::node::NodeId;
 use crate::program::Program;
 
 /// The values of nodes of stage `Const` or `Frame`, in their order. Lanes beyond a node's width are
-/// 0. A node that depends on a point gives NaN.
 /// 0. A node that needs more than a frame's values gives NaN.
 pub fn evaluate_frame(graph: &Graph, nodes: &[NodeId], frame: &FrameValues) -> Vec<[f64; 4]> {
     let nowhere = [f64::NAN; 3];
@@ -46,6 +45,41 @@ pub fn sample_field(
         FieldSample { distance: value, gradient: partials }
     };
     Ok(points.iter().map(sample).collect())
+}
+
+impl Tape {
+    /// Bounds of the partial derivatives of the first lane of the first root in a box, for one
+    /// frame. They contain the derivatives of both sides of a kink. `None` if a derivative has no
+    /// bounds, or if the value may jump.
+    ///
+    /// ```
+    /// use sdfc_graph::eval::{FrameValues, Interval, Tape};
+    /// use sdfc_graph::{Dim, Graph};
+    ///
+    /// let mut graph = Graph::new();
+    /// let point = graph.point(0, Dim::Three);
+    /// let (x, y) = (graph.component(point, 0), graph.component(point, 1));
+    /// let (square, height) = (graph.mul(x, x), graph.abs(y));
+    /// let root = graph.add(square, height);
+    /// let tape = Tape::new(&graph, &[root])?;
+    ///
+    /// let [x, y] = [Interval::new(1.0, 3.0), Interval::new(-1.0, 1.0)];
+    /// let bounds = tape.gradient_over(&FrameValues::default(), [x, y, y]);
+    /// let [by_x, by_y, by_z] = bounds.expect("it is smooth, but for a kink");
+    /// assert!(by_x.lo() > 1.99 && by_x.hi() < 6.01);
+    /// assert!(by_y.lo() < -0.99 && by_y.hi() > 0.99 && by_y.hi() < 1.01);
+    /// assert!(by_z.contains(0.0) && by_z.hi() < 0.01);
+    /// # Ok::<(), sdfc_graph::eval::TapeError>(())
+    /// ```
+    pub fn gradient_over(
+        &self,
+        frame: &FrameValues,
+        region: [Interval; 3],
+    ) -> Option<[Interval; 3]> {
+        let Dual { partials, .. } = self.prepare(frame).scalar(Dual::point(region));
+        let is_bounded = |partial: &Interval| partial.lo().is_finite() && partial.hi().is_finite();
+        partials.iter().all(is_bounded).then_some(partials)
+    }
 }
 
 impl FrameValues<Interval> {

@@ -35,9 +35,13 @@ impl std::error::Error for TapeError {}
 pub struct Tape {
     /// Definitions of per-frame values; arguments are indices of earlier ones.
     pub(super) prelude: Vec<Definition>,
+    /// True if the prelude consists of constants.
+    pub(super) is_constant: bool,
     /// The per-frame values that points need: register i starts as prelude value `kept[i]`.
     pub(super) kept: Vec<u32>,
     pub(super) body: Vec<Code>,
+    /// Number of operations, if all loops run for as many iterations as they may.
+    pub(super) operations: usize,
     pub(super) lists: Vec<Vec<f64>>,
     pub(super) registers: usize,
     pub(super) outputs: Vec<Lanes<u32>>,
@@ -48,8 +52,6 @@ pub struct Tape {
 pub(super) enum Code {
     /// Instructions in sequence.
     Straight(Vec<Instruction>),
-    /// An instruction whose result can jump.
-    Jump(Instruction),
     /// A lookup of an element of a list.
     Lookup {
         list: usize,
@@ -116,7 +118,7 @@ pub(super) const POINT_LANES: usize = 3;
 impl Tape {
     /// Number of scalar operations per point, if all loops run for as many iterations as they may.
     pub fn operations(&self) -> usize {
-        operations(&self.body)
+        self.operations
     }
 
     /// True if there are loops, which may run fewer iterations at a point than over a region.
@@ -128,15 +130,4 @@ impl Tape {
     pub fn registers(&self) -> usize {
         self.registers
     }
-}
-
-fn operations(body: &[Code]) -> usize {
-    let of = |code: &Code| match code {
-        Code::Straight(instructions) => instructions.len(),
-        Code::Jump(_) | Code::Lookup { .. } | Code::Test(_) => 1,
-        Code::Loop(code) => {
-            (code.max_iterations as usize).saturating_mul(operations(&code.body) + 1)
-        }
-    };
-    body.iter().map(of).fold(0, usize::saturating_add)
 }

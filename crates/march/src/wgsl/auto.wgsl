@@ -115,10 +115,11 @@ fn march(ray: Ray, end: f32) -> Trace {
         }
         bracket = with_sample(bracket, t, distance);
         if bracket.crossed {
+            let next = false_position(bracket);
             if width(bracket) < hit {
-                return Trace(bracket.inside.x, HIT, step + 1u);
+                return Trace(next, HIT, step + 1u);
             }
-            stride = false_position(bracket) - bracket.outside.x;
+            stride = next - bracket.outside.x;
             continue;
         }
         // Only the sphere of the distance is known to be empty.

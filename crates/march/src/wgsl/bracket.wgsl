@@ -28,8 +28,8 @@ fn hit_within(ray: Ray, t: f32, near: f32) -> f32 {
     return max(HIT_FRACTION * near, rounding(ray, t));
 }
 
-// The next position to sample, by false position. It keeps away from both ends, so that the bracket
-// always shrinks.
+// The next position to sample, and the position of the hit in a bracket that is narrow, by false
+// position. It keeps away from both ends, so that the bracket always shrinks.
 fn false_position(bracket: Bracket) -> f32 {
     let fraction = clamp(bracket.outside.y / (bracket.outside.y - bracket.inside.y), 0.1, 0.9);
     return mix(bracket.outside.x, bracket.inside.x, fraction);

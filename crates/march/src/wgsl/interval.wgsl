@@ -56,10 +56,11 @@ fn trace(ray: Ray) -> Trace {
         let near = tolerance(ray, free);
         if bracket.crossed {
             evaluations++;
-            if width(bracket) < hit_within(ray, t, near) {
-                return Trace(bracket.inside.x, HIT, evaluations);
-            }
+            let is_narrow = width(bracket) < hit_within(ray, t, near);
             t = false_position(bracket);
+            if is_narrow {
+                return Trace(t, HIT, evaluations);
+            }
         } else if !(t < ray.t_max) {
             return Trace(t, MISS, evaluations);
         } else if evaluations >= proving {

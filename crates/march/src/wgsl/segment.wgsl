@@ -24,10 +24,11 @@ fn trace(ray: Ray) -> Trace {
         }
         bracket = with_sample(bracket, t, distance);
         if bracket.crossed {
-            if width(bracket) < hit_within(ray, t, near) {
-                return Trace(bracket.inside.x, HIT, step + 1u);
-            }
+            let is_narrow = width(bracket) < hit_within(ray, t, near);
             t = false_position(bracket);
+            if is_narrow {
+                return Trace(t, HIT, step + 1u);
+            }
         } else {
             let end = min(t + segment, ray.t_max);
             let slopes = field_slope_range(ray_point(ray, t), ray_point(ray, end), ray.direction);

@@ -50,6 +50,8 @@ pub use ray::Real;
 
 /// Columns and rows of pixels that a thread takes at a time.
 const BLOCK: u32 = 32;
+/// Columns and rows of pixels whose rays stay together.
+const GROUP: u32 = 16;
 /// The maximum number of pixels of a tile; threads wait for each other at its end.
 const MAX_TILE_PIXELS: u32 = 1 << 20;
 
@@ -277,8 +279,13 @@ impl CpuScene {
         let total = tiler.pixels();
         while let Some(tile) = tiler.next() {
             let start = now();
-            for (block, drawn) in draw_tile(pixels, tile) {
-                image.put(region.origin, block, drawn.into_iter());
+            for (groups, drawn) in draw_tile(pixels, tile) {
+                let mut rest = drawn.as_slice();
+                for group in groups {
+                    let (pixels, others) = rest.split_at(group.pixels().min(rest.len()));
+                    image.put(region.origin, group, pixels);
+                    rest = others;
+                }
             }
             let elapsed = start.map_or(0.0, milliseconds_since);
             tiler.took(tile, elapsed);
@@ -309,12 +316,15 @@ fn now() -> Option<Instant> {
 }
 
 /// Draws the blocks of a tile on all threads.
-fn draw_tile<P: Pixels>(pixels: &P, tile: Tile) -> Vec<(Tile, Vec<PixelBlock>)> {
+fn draw_tile<P: Pixels>(pixels: &P, tile: Tile) -> Vec<(Vec<Tile>, Vec<PixelBlock>)> {
     let blocks = tile.blocks(BLOCK);
     let draw = |pixels: &mut P, block: Tile| {
-        let positions: Vec<[u32; 2]> =
-            (0..block.pixels()).map(|index| block.position(index)).collect();
-        (block, pixels.pixels(&positions))
+        let groups = block.blocks(GROUP);
+        let positions: Vec<[u32; 2]> = groups
+            .iter()
+            .flat_map(|group| (0..group.pixels()).map(|index| group.position(index)))
+            .collect();
+        (groups, pixels.pixels(&positions))
     };
     #[cfg(feature = "threads")]
     return blocks.into_par_iter().map_init(|| pixels.clone(), draw).collect();

@@ -68,19 +68,6 @@ impl<T: Real> Ray<T> {
     }
 }
 
-/// Evaluates a tape at points, in their order: for each point one array of lanes per root.
-pub(super) fn values_at<T: Real>(
-    evaluator: &mut Batch<'_, T>,
-    points: &[[T; 3]],
-) -> Vec<Vec<[f64; 4]>> {
-    let mut values = Vec::with_capacity(points.len());
-    for group in points.chunks(LANES) {
-        let roots = evaluator.eval(packed_from(group.iter().copied()));
-        values.extend((0..group.len()).map(|lane| unpacked(roots, lane)));
-    }
-    values
-}
-
 /// Evaluates functions of surfaces, of which each is a point, a normal and a direction to the eye.
 pub(super) fn surface_values<T: Real>(
     evaluator: &mut Batch<'_, T>,

@@ -1,34 +1,30 @@
 //! Marching rays on the CPU, several at a time.
 
+mod auto;
 pub(super) mod copies;
+mod descent;
+mod group;
 mod interval;
 mod limits;
 mod march;
+mod rays;
+mod solve;
 
+use super::cells::Cell;
 use super::method::CpuMethod;
 use super::pre_intersection::PreIntersection;
 use super::ray::{Ray, Real};
 use crate::image::{CAPPED, HIT, MISS};
 
 pub(super) use limits::Limits;
-pub(super) use march::trace;
+pub(super) use rays::trace;
 
 /// A sample of `auto` within this fraction of the tolerance is a hit.
 const HIT_FRACTION: f64 = 0.00390625;
-/// Weight of the last step's slope in the running mean.
-const SLOPE_WEIGHT: f64 = 0.5;
-/// Upper bound of a step of `auto` in distances.
-const MAX_RELAXATION: f64 = 4.0;
-/// Bounds of a secant step of `auto`: the distance divided by this slope, or this fraction of the
-/// tolerance.
-const MIN_SLOPE: f64 = 0.25;
-const MIN_STEP_FRACTION: f64 = 0.25;
-/// Bound of the last secant, which places the hit: the distance divided by this slope.
-const MIN_FINAL_SLOPE: f64 = 0.0078125;
 
 /// The result of a traced ray.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Trace<T> {
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Trace<'c, T> {
     pub(super) t: T,
     /// One of `MISS`, `HIT`, `CAPPED`.
     pub(super) status: u16,
@@ -38,13 +34,15 @@ pub(super) struct Trace<T> {
     pub(super) clearance: T,
     /// True if the ray passed a stretch without a proof that it is free (`interval`).
     pub(super) unproven: bool,
+    /// The cell of a hit, if it is known.
+    pub(super) cell: Option<&'c Cell>,
 }
 
-impl<T: Real> Trace<T> {
+impl<T: Real> Trace<'_, T> {
     /// The result of a ray that was not traced.
-    fn untraced() -> Self {
+    pub(super) fn untraced() -> Self {
         let (t, clearance) = (T::constant(f64::NAN), T::constant(f64::INFINITY));
-        Self { t, status: MISS, evaluations: 0, clearance, unproven: false }
+        Self { t, status: MISS, evaluations: 0, clearance, unproven: false, cell: None }
     }
 }
 
@@ -91,17 +89,6 @@ enum Next<T> {
     Bounds(T),
 }
 
-/// A part of a ray, from its current position on, and the facts that hold for the field there.
-#[derive(Clone, Copy)]
-struct Stretch<T> {
-    /// The position up to which it holds.
-    end: T,
-    /// True if there is no surface.
-    is_free: bool,
-    /// True if the scene has bounds along segments.
-    has_bounds: bool,
-}
-
 impl<T: Real> Walk<T> {
     fn new(ray: Ray<T>, known: PreIntersection<T>) -> Self {
         let zero = T::constant(0.0);
@@ -127,13 +114,19 @@ impl<T: Real> Walk<T> {
         }
     }
 
-    fn result(&self, t: T, status: u16) -> Trace<T> {
+    /// A march along a part of a ray.
+    fn along(ray: Ray<T>, [from, to]: [T; 2]) -> Self {
+        Self { t: from, end: to, ..Self::new(ray, PreIntersection::nothing(&ray)) }
+    }
+
+    fn result(&self, t: T, status: u16) -> Trace<'static, T> {
         let evaluations = self.evaluations + self.known.evaluations;
-        Trace { t, status, evaluations, clearance: self.clearance, unproven: self.unproven }
+        let Self { clearance, unproven, .. } = *self;
+        Trace { t, status, evaluations, clearance, unproven, cell: None }
     }
 
     /// The result of a ray that has hit nothing on its march; a position that is NaN stays NaN.
-    fn without_hit(&self) -> Trace<T> {
+    fn without_hit(&self) -> Trace<'static, T> {
         let t_max = self.whole.t_max;
         match self.known.hit(&self.whole) {
             Some(met) if self.t > self.end => self.result(met, HIT),
@@ -148,8 +141,8 @@ impl<T: Real> Walk<T> {
         &mut self,
         distance: T,
         limits: &Limits<T>,
-        stretch: &Stretch<T>,
-    ) -> Option<Trace<T>> {
+        has_bounds: bool,
+    ) -> Option<Trace<'static, T>> {
         self.evaluations += limits.method.evaluations_per_sample();
         if limits.records_clearance {
             self.record_clearance(distance);
@@ -158,24 +151,19 @@ impl<T: Real> Walk<T> {
             CpuMethod::Sphere if distance < limits.epsilon => Next::Hit(self.t),
             CpuMethod::Sphere => Next::At(self.t + distance),
             CpuMethod::Auto => self.auto(distance, limits),
-            CpuMethod::Interval => self.interval(distance, limits, stretch),
+            CpuMethod::Interval => self.interval(distance, limits, has_bounds),
         };
         self.follow(next, limits)
     }
 
     /// Takes the lower bound that the ray waits for.
-    fn take_bound(
-        &mut self,
-        least: T,
-        limits: &Limits<T>,
-        stretch: &Stretch<T>,
-    ) -> Option<Trace<T>> {
-        let next = self.bounded(least, limits, stretch);
+    fn take_bound(&mut self, least: T, limits: &Limits<T>) -> Option<Trace<'static, T>> {
+        let next = self.bounded(least, limits);
         self.follow(next, limits)
     }
 
     /// Moves on, unless the ray has ended.
-    fn follow(&mut self, next: Next<T>, limits: &Limits<T>) -> Option<Trace<T>> {
+    fn follow(&mut self, next: Next<T>, limits: &Limits<T>) -> Option<Trace<'static, T>> {
         self.pending = None;
         if self.unproven && limits.ends_unproven {
             return Some(self.result(self.known.start + self.t, CAPPED));
@@ -194,7 +182,7 @@ impl<T: Real> Walk<T> {
 
     /// The result of a ray that has hit nothing yet, if it is not `within` its interval or has run
     /// out of steps.
-    fn ended(&self, within: bool, limits: &Limits<T>) -> Option<Trace<T>> {
+    fn ended(&self, within: bool, limits: &Limits<T>) -> Option<Trace<'static, T>> {
         if !within {
             Some(self.without_hit())
         } else if self.evaluations
@@ -227,69 +215,9 @@ impl<T: Real> Walk<T> {
         }
     }
 
-    fn auto(&mut self, distance: T, limits: &Limits<T>) -> Next<T> {
-        let zero = T::constant(0.0);
-        if self.evaluations == 1 && distance < zero {
-            return Next::Hit(self.t);
-        }
-        let near = limits.tolerance(&self.ray, self.t);
-        let (last, above) = self.outside.unwrap_or((self.t, zero));
-        let hit = self.hit_within(near);
-        // Empty spheres that do not meet may have something between them; secants are short.
-        let checked = self.inside.is_none() && !self.close;
-        if checked && self.stride > above + distance.max(zero) + hit {
-            (self.stride, self.slope) = (above, T::constant(-1.0));
-            return Next::At(last + above);
-        }
-        let gain = if self.stride > zero {
-            (distance - above).div(self.stride)
-        } else {
-            T::constant(-1.0)
-        };
-        // Rays with a clearance step no farther than the distance: they would hardly move.
-        let small_is_near = !limits.is_loose || limits.records_clearance;
-        if distance.abs() < hit && small_is_near {
-            return Next::Hit(self.t + secant(distance, gain, MIN_FINAL_SLOPE));
-        }
-        self.record(distance);
-        if let Some(next) = self.false_position(hit) {
-            if let (Next::At(t), Some((last, _))) = (&next, self.outside) {
-                self.stride = *t - last;
-            }
-            return next;
-        }
-        // Only the sphere of the distance is known to be empty.
-        let (free, end) = (self.t + distance, self.end);
-        let goes_on = free <= end;
-        if !goes_on {
-            return Next::At(free);
-        }
-        self.slope = self.slope + T::constant(SLOPE_WEIGHT) * (gain - self.slope);
-        self.close = distance < near;
-        let step = if self.close {
-            let step = secant(distance, gain, MIN_SLOPE);
-            // Along a surface, or where a change of sign is looked for, no step need be shorter.
-            if limits.is_loose || gain > T::constant(-MIN_SLOPE) {
-                step.max(T::constant(MIN_STEP_FRACTION) * near)
-            } else {
-                step
-            }
-        } else {
-            // Two spheres beside a plane touch.
-            let apart = (T::constant(1.0) - self.slope)
-                .clamp(T::constant(2.0 / MAX_RELAXATION), T::constant(2.0));
-            (T::constant(2.0) * distance).div(apart)
-        };
-        let step = if limits.records_clearance { step.min(distance) } else { step };
-        self.stride = step.min(end - self.t);
-        // A sum that is rounded up may be past the end, where the ray would count as a miss without
-        // a sample.
-        Next::At((self.t + self.stride).min(end))
-    }
-
     /// The distance from the surface below which a sample is a hit.
     fn hit_within(&self, near: T) -> T {
-        (T::constant(HIT_FRACTION) * near).max(self.ray.rounding(self.t))
+        hit_within(&self.ray, self.t, near)
     }
 
     fn record(&mut self, distance: T) {
@@ -303,17 +231,14 @@ impl<T: Real> Walk<T> {
     /// The next position between one outside and one inside, once there are both.
     fn false_position(&self, hit: T) -> Option<Next<T>> {
         let ((last, above), (first, below)) = (self.outside?, self.inside?);
-        if first - last < hit {
-            return Some(Next::Hit(first));
-        }
         // The zero of a line through both samples, but within the middle 8 tenths.
         let part = above.div(above - below).clamp(T::constant(0.1), T::constant(0.9));
-        Some(Next::At(last + part * (first - last)))
+        let next = last + part * (first - last);
+        Some(if first - last < hit { Next::Hit(next) } else { Next::At(next) })
     }
 }
 
-/// The distance to the surface along the ray if the field falls by `-gain` per unit of length, with
-/// a slope of at least `least`.
-fn secant<T: Real>(distance: T, gain: T, least: f64) -> T {
-    distance.div((T::constant(0.0) - gain).max(T::constant(least)))
+/// The distance from the surface below which a point of a ray is a hit, given its tolerance.
+fn hit_within<T: Real>(ray: &Ray<T>, t: T, near: T) -> T {
+    (T::constant(HIT_FRACTION) * near).max(ray.rounding(t))
 }

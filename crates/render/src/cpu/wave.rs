@@ -6,7 +6,7 @@ use sdfc_march::{PixelBlock, UNPROVEN};
 use super::cells::Cells;
 use super::gradients::Gradient;
 use super::pixels::Pixels;
-use super::pre_intersection::{PreIntersection, PreIntersectionBatch};
+use super::pre_intersection::PreIntersectionBatch;
 use super::ray::{Batch, Ray, Real, surface_values};
 use super::shade::{Paint, Surface};
 use super::surroundings::{IncomingLight, background_color, light_visibility, through_fog};
@@ -48,7 +48,7 @@ struct Shade {
 
 impl Shade {
     /// Adds what a ray cost, and what it left unproven.
-    fn count<T: Real>(&mut self, trace: &Trace<T>) {
+    fn count<T: Real>(&mut self, trace: &Trace<'_, T>) {
         self.evaluations += trace.evaluations;
         self.unproven = self.unproven || trace.unproven;
     }
@@ -83,72 +83,69 @@ impl<T: Real> SurfaceHit<T> {
 
 impl<T: Real> Pixels for Wave<'_, T> {
     fn pixels(&mut self, positions: &[[u32; 2]]) -> Vec<PixelBlock> {
-        let mut view_rays: Vec<ViewRay<T>> = positions
-            .iter()
-            .enumerate()
-            .map(|(pixel, position)| ViewRay {
-                pixel,
-                ray: self.camera_ray(*position),
-                weight: DVec3::ONE,
-                blur: 0.0,
-            })
-            .collect();
+        let rays: Vec<Ray<T>> =
+            positions.iter().map(|position| self.camera_ray(*position)).collect();
+        let primary = self.traces(&rays, false);
         let mut shades = vec![Shade::default(); positions.len()];
-        let primary = self.traced(&view_rays, &mut shades);
-        let mut hits = self.lit_hits(&view_rays, &primary, &mut shades);
+        let camera_ray =
+            |pixel: usize| ViewRay { pixel, ray: rays[pixel], weight: DVec3::ONE, blur: 0.0 };
+        let mut hits = self.lit_hits(camera_ray, &primary, &mut shades);
         for _ in 0..self.view.reflections {
             // A surface that mirrors nothing needs no reflected ray.
             let mirrors = |ray: &ViewRay<T>| ray.weight.cmpgt(DVec3::ZERO).any();
-            view_rays = hits.iter().map(|hit| self.reflected(hit)).filter(mirrors).collect();
-            let traces = self.traced(&view_rays, &mut shades);
-            hits = self.lit_hits(&view_rays, &traces, &mut shades);
+            let view_rays: Vec<ViewRay<T>> =
+                hits.iter().map(|hit| self.reflected(hit)).filter(mirrors).collect();
+            let rays: Vec<Ray<T>> = view_rays.iter().map(|view_ray| view_ray.ray).collect();
+            let traces = self.traces(&rays, false);
+            hits = self.lit_hits(|index| view_rays[index], &traces, &mut shades);
         }
         let pixels = primary.iter().zip(shades);
         pixels.map(|(trace, shade)| self.block(trace, shade)).collect()
     }
 }
 
-impl<T: Real> Wave<'_, T> {
-    fn traced(&mut self, view_rays: &[ViewRay<T>], shades: &mut [Shade]) -> Vec<Trace<T>> {
-        let rays: Vec<Ray<T>> = view_rays.iter().map(|view_ray| view_ray.ray).collect();
-        let traces = self.traces(&rays, false);
-        for (view_ray, trace) in view_rays.iter().zip(&traces) {
-            shades[view_ray.pixel].count(trace);
+impl<'a, T: Real> Wave<'a, T> {
+    /// Traces rays; those that record their clearance are marched through the whole field.
+    fn traces(&mut self, rays: &[Ray<T>], records_clearance: bool) -> Vec<Trace<'a, T>> {
+        let limits = Limits { records_clearance, ..self.limits };
+        let Some(pre_intersection) = &mut self.pre_intersection else {
+            return trace(self.field, self.range.as_mut(), rays, None, &limits);
+        };
+        let known = pre_intersection.look(rays, records_clearance);
+        if records_clearance {
+            return trace(self.field, self.range.as_mut(), rays, Some(&known), &limits);
         }
+        if let Some(copies) = &mut pre_intersection.copies {
+            return trace_among_copies(copies, rays, &known, &limits);
+        }
+        let field = self.marched.unwrap_or(self.field);
+        let mut traces = trace(field, self.range.as_mut(), rays, Some(&known), &limits);
+        // Cells of another field have no gradients.
+        traces.iter_mut().for_each(|trace| trace.cell = None);
         traces
     }
 
-    /// Traces rays; those that record their clearance are marched through the whole field.
-    fn traces(&mut self, rays: &[Ray<T>], records_clearance: bool) -> Vec<Trace<T>> {
-        let known = match &mut self.pre_intersection {
-            Some(pre_intersection) => pre_intersection.look(rays, records_clearance),
-            None => rays.iter().map(PreIntersection::nothing).collect(),
-        };
-        let rays: Vec<_> = rays.iter().copied().zip(known).collect();
-        let limits = Limits { records_clearance, ..self.limits };
-        let pre_intersection = self.pre_intersection.as_mut().filter(|_| !records_clearance);
-        let marched = match pre_intersection {
-            Some(PreIntersectionBatch { copies: Some(copies), .. }) => {
-                return trace_among_copies(copies, &rays, &limits);
-            }
-            Some(_) => self.marched,
-            None => None,
-        };
-        trace(marched.unwrap_or(self.field), self.range.as_mut(), &rays, &limits)
-    }
-
-    /// Adds the background for view rays that hit nothing, and the lights for the others.
+    /// Adds what view rays see, given by their index: the background where they hit nothing, and
+    /// the lights where they hit a surface. Adds what the rays cost, too.
     fn lit_hits(
         &mut self,
-        view_rays: &[ViewRay<T>],
-        traces: &[Trace<T>],
+        view_ray: impl Fn(usize) -> ViewRay<T>,
+        traces: &[Trace<'_, T>],
         shades: &mut [Shade],
     ) -> Vec<SurfaceHit<T>> {
-        for (view_ray, _) in view_rays.iter().zip(traces).filter(|(_, trace)| trace.status != HIT) {
-            let background = background_color(self.view, vector(view_ray.ray.direction));
-            shades[view_ray.pixel].color += background * view_ray.weight;
+        let mut seen = Vec::new();
+        for (index, trace) in traces.iter().enumerate() {
+            let view_ray = view_ray(index);
+            let shade = &mut shades[view_ray.pixel];
+            shade.count(trace);
+            if trace.status == HIT {
+                seen.push((view_ray, *trace));
+            } else {
+                let background = background_color(self.view, vector(view_ray.ray.direction));
+                shade.color += background * view_ray.weight;
+            }
         }
-        let mut hits = self.hits(view_rays, traces);
+        let mut hits = self.hits(&seen);
         let open = self.unoccluded_fractions(&hits, shades);
         for (SurfaceHit { view_ray, t, surface, .. }, open) in hits.iter_mut().zip(open) {
             let (clear, haze) = through_fog(self.view, -surface.toward_eye, (*t).into());
@@ -211,20 +208,18 @@ impl<T: Real> Wave<'_, T> {
     }
 
     /// Normals and materials at the hits.
-    fn hits(&mut self, view_rays: &[ViewRay<T>], traces: &[Trace<T>]) -> Vec<SurfaceHit<T>> {
+    fn hits(&mut self, seen: &[(ViewRay<T>, Trace<'_, T>)]) -> Vec<SurfaceHit<T>> {
         let Some(gradient) = &mut self.gradient else { return Vec::new() };
-        let met = view_rays.iter().zip(traces).filter(|(_, trace)| trace.status == HIT);
-        let hits: Vec<(ViewRay<T>, T)> =
-            met.map(|(view_ray, trace)| (*view_ray, trace.t)).collect();
-        let points: Vec<[T; 3]> = hits.iter().map(|(view_ray, t)| view_ray.ray.at(*t)).collect();
-        let gradients = gradient.at(self.field, &points);
-        let hit = |(index, (view_ray, t)): (usize, (ViewRay<T>, T))| {
-            let gradient = gradients[index];
-            let surface = Surface::new(gradient, -vector(view_ray.ray.direction));
-            let slope = if gradient.length() > 0.0 { gradient.length() } else { 1.0 };
-            SurfaceHit { view_ray, t, surface, slope }
-        };
-        let mut hits: Vec<SurfaceHit<T>> = hits.into_iter().enumerate().map(hit).collect();
+        let points: Vec<[T; 3]> =
+            seen.iter().map(|(view_ray, trace)| view_ray.ray.at(trace.t)).collect();
+        let gradients = gradient.at(self.field, &points, |index| seen[index].1.cell);
+        let hit =
+            |(&(view_ray, Trace { t, .. }), gradient): (&(ViewRay<T>, Trace<'_, T>), DVec3)| {
+                let surface = Surface::new(gradient, -vector(view_ray.ray.direction));
+                let slope = if gradient.length() > 0.0 { gradient.length() } else { 1.0 };
+                SurfaceHit { view_ray, t, surface, slope }
+            };
+        let mut hits: Vec<SurfaceHit<T>> = seen.iter().zip(gradients).map(hit).collect();
         if let Some(material) = &mut self.material {
             let lanes = |vector: DVec3| vector.to_array().map(T::constant);
             let vectors = |(hit, &point): (&SurfaceHit<T>, &[T; 3])| {
@@ -310,7 +305,7 @@ impl<T: Real> Wave<'_, T> {
         ViewRay { pixel: view_ray.pixel, ray, weight, blur: surface.roughness() }
     }
 
-    fn block(&self, trace: &Trace<T>, shade: Shade) -> PixelBlock {
+    fn block(&self, trace: &Trace<'_, T>, shade: Shade) -> PixelBlock {
         let t: f64 = trace.t.into();
         let exposure = self.view.exposure;
         let color = exposure.map_or(shade.color, |exposure| exposure.developed(shade.color));

@@ -106,25 +106,16 @@ impl Image {
         (x < width && y < height).then(|| self.pixels.get(index)).flatten()
     }
 
-    /// Writes the pixels of a tile, row by row. `origin` is the position of this picture in the
-    /// whole one, which the tile is relative to; pixels outside of this picture are left out.
-    pub(crate) fn put(
-        &mut self,
-        origin: [u32; 2],
-        tile: Tile,
-        mut pixels: impl Iterator<Item = PixelBlock>,
-    ) {
-        let width = self.size[0] as usize;
-        let [left, top] = [0, 1].map(|axis| i64::from(tile.origin[axis]) - i64::from(origin[axis]));
-        for y in (top..).take(tile.size[1] as usize) {
-            let row = usize::try_from(y).ok().and_then(|y| self.pixels.chunks_mut(width).nth(y));
-            let row = row.unwrap_or_default();
-            for x in (left..).take(tile.size[0] as usize) {
-                // The tile decides how many pixels are taken.
-                let pixel = pixels.next().unwrap_or_default();
-                let slot = usize::try_from(x).ok().and_then(|x| row.get_mut(x));
-                slot.into_iter().for_each(|slot| *slot = pixel);
-            }
+    /// Writes the pixels of a tile, given row by row. `origin` is the position of this picture in
+    /// the whole one, which the tile is relative to; pixels outside of this picture are left out.
+    pub(crate) fn put(&mut self, origin: [u32; 2], tile: Tile, pixels: &[PixelBlock]) {
+        let [columns, rows] = [0, 1].map(|axis| overlap(origin[axis], self.size[axis], tile, axis));
+        let (width, tile_width) = (self.size[0] as usize, tile.size[0] as usize);
+        let drawn = pixels.chunks_exact(tile_width.max(1)).skip(rows.skipped);
+        let shown = self.pixels.chunks_exact_mut(width).skip(rows.first).take(rows.count);
+        for (to, from) in shown.zip(drawn) {
+            let from = &from[columns.skipped..columns.skipped + columns.count];
+            to[columns.first..columns.first + columns.count].copy_from_slice(from);
         }
     }
 
@@ -160,6 +151,23 @@ impl Image {
         };
         self.pixels.iter().flat_map(channels).collect()
     }
+}
+
+/// The columns or rows that a tile has in common with a picture.
+struct Overlap {
+    /// The first of them in the picture.
+    first: usize,
+    /// The number of those before it in the tile.
+    skipped: usize,
+    count: usize,
+}
+
+fn overlap(origin: u32, length: u32, tile: Tile, axis: usize) -> Overlap {
+    let (start, side) = (tile.origin[axis], tile.size[axis]);
+    let first = start.saturating_sub(origin).min(length);
+    let skipped = origin.saturating_sub(start).min(side);
+    let count = (side - skipped).min(length - first);
+    Overlap { first: first as usize, skipped: skipped as usize, count: count as usize }
 }
 
 /// Refuses sizes outside the limits.

@@ -150,6 +150,9 @@ impl Number for Affine {
     fn is_definitely_false(self) -> bool {
         self.range.is_definitely_false()
     }
+    fn jump_slope(self) -> Self {
+        Self::from_range(self.range.jump_slope())
+    }
     fn element(self, list: &[f64]) -> Self {
         Self::from_range(self.range.element(list))
     }

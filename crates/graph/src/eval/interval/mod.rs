@@ -263,6 +263,9 @@ impl Number for Interval {
     fn is_definitely_false(self) -> bool {
         self.hi == 0.0
     }
+    fn jump_slope(self) -> Self {
+        if self.lo == self.hi { Self::FALSE } else { Self::ENTIRE }
+    }
     fn element(self, list: &[f64]) -> Self {
         let last = list.len().saturating_sub(1);
         let index = |end: f64| (end.max(0.0) as usize).min(last);

@@ -4,9 +4,12 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use sdfc_graph::eval::{FrameValues, Tape};
 
+use super::Cells;
 use super::octree::Octree;
-use super::{Cells, MIN_OPERATIONS};
 use crate::view::View;
+
+/// Smaller fields have one cell if nothing is to be proven of cells.
+const MIN_OPERATIONS: usize = 200;
 
 /// Larger octrees are not kept after their frame: about 80 MB.
 const MAX_KEPT_OPERATIONS: usize = 1 << 22;
@@ -32,7 +35,7 @@ impl CachedField {
     /// picture has made are used again if the values that the field depends on are the same. With
     /// `proves`, cells are also divided to prove that they hold no surface.
     pub(crate) fn cells<'a>(&self, frame: &'a FrameValues, view: &View, proves: bool) -> Cells<'a> {
-        if self.tape.operations() < MIN_OPERATIONS {
+        if !proves && self.tape.operations() < MIN_OPERATIONS {
             return self.whole(frame);
         }
         let mut kept = self.octree.lock().unwrap_or_else(PoisonError::into_inner);

@@ -1,5 +1,6 @@
 //! The octree of the CPU renderer's cells, which grows where rays and points ask for it.
 
+use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, OnceLock};
 
@@ -13,8 +14,8 @@ use crate::view::View;
 const LEAST_SHARE: f64 = 0.05;
 /// A shorter tape has at most this fraction of the operations.
 const SHORTER: f64 = 0.75;
-/// Cells of these first levels are divided at once: the tape is seldom shorter there.
-const COARSE_LEVELS: u32 = 5;
+/// Cells of these first levels are divided at once: they are too large to tell anything.
+const COARSE_LEVELS: u32 = 3;
 /// The maximum number of divisions from the root to a cell.
 const MAX_DEPTH: u32 = 24;
 /// The root reaches from the origin to this many lengths of rays behind the eye, or to the next
@@ -36,6 +37,24 @@ const CELL_OPERATIONS: usize = 8;
 struct Node {
     cell: OnceLock<Cell>,
     children: OnceLock<Box<[Node; 8]>>,
+}
+
+/// A node, its cube and its depth.
+#[derive(Clone, Copy)]
+struct Place<'c> {
+    node: &'c Node,
+    cube: Cube,
+    depth: u32,
+}
+
+/// Rays whose directions have the same signs.
+pub(crate) trait Beam<'c> {
+    /// The index of the child of a cube that all rays of the beam pass before any other one.
+    fn first_child(&self) -> usize;
+    /// False if no ray passes a cube that is grown by a margin.
+    fn passes(&self, cube: &Cube, margin: f64) -> bool;
+    /// Visits a cell; breaks if no ray is left.
+    fn visit(&mut self, cell: &'c Cell) -> ControlFlow<()>;
 }
 
 /// The cubes around the origin, for one field and the values of one frame. A cell depends on these
@@ -77,6 +96,12 @@ impl Octree {
             && self.inputs.iter().zip(&inputs).all(is_same)
     }
 
+    /// True if a ray of this length is in the octree, whatever its direction is.
+    pub(super) fn surrounds(&self, origin: [f64; 3], length: f64) -> bool {
+        let reach = |axis: usize| (origin[axis] - self.cube.center[axis]).abs() + length;
+        (0..3).all(|axis| reach(axis) <= self.cube.half)
+    }
+
     /// The memory of all cells, in operations of tapes.
     pub(super) fn operations(&self) -> usize {
         self.operations.load(Ordering::Relaxed)
@@ -91,24 +116,65 @@ impl Octree {
         for depth in 0..=MAX_DEPTH {
             if depth >= COARSE_LEVELS {
                 around = node.cell.get_or_init(|| self.examine(around, cube));
-                let is_open = depth < MAX_DEPTH && 2.0 * cube.half > 64.0 * self.margin;
-                if !(is_open && sight.divides(around)) {
+                if !(self.may_divide(cube, depth) && sight.divides(around)) {
                     break;
                 }
             }
-            let (index, child) = cube.child(point);
-            (node, cube) = (&node.children.get_or_init(Box::default)[index], child);
+            let index = cube.child_around(point);
+            node = &node.children.get_or_init(Box::default)[index];
+            cube = cube.child_at(index);
         }
         around
+    }
+
+    /// Visits the smallest cells for an eye which a beam passes and which may contain a surface,
+    /// in the order of the beam.
+    pub(super) fn visit<'c>(&'c self, sight: &Sight, beam: &mut impl Beam<'c>) {
+        let root = Place { node: &self.root, cube: self.cube, depth: 0 };
+        // A break means that no ray is left.
+        let _ = self.visit_in(sight, beam, root, &self.whole);
+    }
+
+    fn visit_in<'c>(
+        &'c self,
+        sight: &Sight,
+        beam: &mut impl Beam<'c>,
+        Place { node, cube, depth }: Place<'c>,
+        mut around: &'c Cell,
+    ) -> ControlFlow<()> {
+        if !beam.passes(&cube, self.margin) {
+            return ControlFlow::Continue(());
+        }
+        if depth >= COARSE_LEVELS {
+            around = node.cell.get_or_init(|| self.examine(around, cube));
+            if around.is_free() {
+                return ControlFlow::Continue(());
+            }
+            if !(self.may_divide(cube, depth) && sight.divides(around)) {
+                return beam.visit(around);
+            }
+        }
+        let children = node.children.get_or_init(Box::default);
+        let first = beam.first_child();
+        for index in (0..8).map(|index| index ^ first) {
+            let place =
+                Place { node: &children[index], cube: cube.child_at(index), depth: depth + 1 };
+            self.visit_in(sight, beam, place, around)?;
+        }
+        ControlFlow::Continue(())
+    }
+
+    fn may_divide(&self, cube: Cube, depth: u32) -> bool {
+        depth < MAX_DEPTH && 2.0 * cube.half > 64.0 * self.margin
     }
 
     /// The cell of a cube, given the cell around it.
     fn examine(&self, around: &Cell, cube: Cube) -> Cell {
         let over = around.tape.over(&self.frame, cube.coordinates(self.margin));
-        let least = over.value.range().lo();
+        let form = over.value;
         let (tape, price) = self.shortened(around, cube, over);
         self.operations.fetch_add(CELL_OPERATIONS, Ordering::Relaxed);
-        Cell { cube, tape, least, price }
+        Cell::new(cube, self.margin, tape, form, price)
     }
 
     /// The tape of a cube, and the price of another division: the number of operations that it

@@ -11,13 +11,15 @@ use crate::image::HIT;
 /// Traces all rays to their ends; the result has their order.
 pub(crate) fn trace_among_copies<T: Real>(
     copies: &mut Batch<'_, T>,
-    rays: &[(Ray<T>, PreIntersection<T>)],
+    rays: &[Ray<T>],
+    known: &[PreIntersection<T>],
     limits: &Limits<T>,
-) -> Vec<Trace<T>> {
+) -> Vec<Trace<'static, T>> {
     let mut traces = vec![Trace::untraced(); rays.len()];
-    for (group, traces) in rays.chunks(LANES).zip(traces.chunks_mut(LANES)) {
+    let groups = rays.chunks(LANES).zip(known.chunks(LANES));
+    for ((group, known), traces) in groups.zip(traces.chunks_mut(LANES)) {
         let mut walks: Vec<Option<Walk<T>>> = Vec::with_capacity(LANES);
-        for (&(ray, known), trace) in group.iter().zip(traces.iter_mut()) {
+        for ((&ray, &known), trace) in group.iter().zip(known).zip(traces.iter_mut()) {
             let walk = Walk::new(ray, known);
             let must_march = walk.known.must_march();
             if !must_march {
@@ -49,7 +51,7 @@ pub(crate) fn trace_among_copies<T: Real>(
 impl<T: Real> Walk<T> {
     /// Moves by the result for the current position: where the ray hits a copy that is sampled
     /// here, and how far there are no other copies.
-    fn step_over(&mut self, [met, reach]: [T; 2], limits: &Limits<T>) -> Option<Trace<T>> {
+    fn step_over(&mut self, [met, reach]: [T; 2], limits: &Limits<T>) -> Option<Trace<'static, T>> {
         self.evaluations += 1;
         let [met, reach] = [met, reach].map(|way| self.t + way);
         if met <= reach && met <= self.end {

@@ -1,6 +1,6 @@
 //! The method `interval` on the CPU, as in the shader.
 
-use super::{Limits, Next, Stretch, Walk};
+use super::{Limits, Next, Walk};
 use crate::cpu::ray::Real;
 
 /// Bounds on the fraction of a segment that is examined next.
@@ -23,18 +23,20 @@ const BRACKET_STEPS: u32 = 48;
 
 impl<T: Real> Walk<T> {
     /// Takes a sample. The ray moves to the next position of false position after a change of sign,
-    /// to the end of a stretch that is free, or to the next sample where there are no bounds.
-    /// Otherwise it waits for the bounds of a segment.
+    /// or to the next sample where there are no bounds. Otherwise it waits for the bounds of a
+    /// segment.
     pub(super) fn interval(
         &mut self,
         distance: T,
         limits: &Limits<T>,
-        stretch: &Stretch<T>,
+        has_bounds: bool,
     ) -> Next<T> {
         let zero = T::constant(0.0);
-        let hit = self.hit_within(limits.tolerance(&self.ray, self.t));
         let is_first = self.outside.is_none() && self.inside.is_none();
-        if is_first && distance < hit {
+        // A ray may start in a surface, but where it enters a cell it has passed none.
+        let near_start = self.hit_within(limits.tolerance(&self.ray, zero));
+        let limit = if self.t > zero { zero } else { near_start };
+        if is_first && distance < limit {
             self.evaluations = 1;
             return Next::Hit(self.t);
         }
@@ -46,14 +48,10 @@ impl<T: Real> Walk<T> {
         if let Some(next) = self.false_position(self.hit_within(near)) {
             return next;
         }
-        if self.t >= self.ray.t_max {
-            return Next::At(self.ray.t_max + self.ray.t_max);
+        if self.t >= self.end {
+            return Next::At(self.end + self.end);
         }
-        if stretch.is_free {
-            self.evaluations += 1;
-            return Next::At(stretch.end.min(self.ray.t_max));
-        }
-        if !stretch.has_bounds {
+        if !has_bounds {
             return self.unproven_step(limits);
         }
         let rounding = self.ray.rounding(self.t);
@@ -62,27 +60,22 @@ impl<T: Real> Walk<T> {
             self.segment = self.segment.min(above.max(near));
         }
         self.shortened = false;
-        self.bounds(limits, stretch)
+        self.bounds(limits)
     }
 
     /// Asks for bounds of the next segment, unless the steps for proofs are spent.
-    fn bounds(&mut self, limits: &Limits<T>, stretch: &Stretch<T>) -> Next<T> {
+    fn bounds(&mut self, limits: &Limits<T>) -> Next<T> {
         if self.evaluations >= limits.steps {
             return self.unproven_step(limits);
         }
         self.evaluations += 1;
         let (last, _) = self.outside.unwrap_or((T::constant(0.0), T::constant(0.0)));
-        Next::Bounds((last + self.segment).min(self.ray.t_max).min(stretch.end))
+        Next::Bounds((last + self.segment).min(self.end))
     }
 
     /// Takes a lower bound of the field on a segment. The ray moves to its end if it is free or too
     /// short to tell. Otherwise its nearer part is examined next.
-    pub(super) fn bounded(
-        &mut self,
-        least: T,
-        limits: &Limits<T>,
-        stretch: &Stretch<T>,
-    ) -> Next<T> {
+    pub(super) fn bounded(&mut self, least: T, limits: &Limits<T>) -> Next<T> {
         let zero = T::constant(0.0);
         let (last, above) = self.outside.unwrap_or((zero, zero));
         let end = self.pending.unwrap_or(last);
@@ -103,17 +96,17 @@ impl<T: Real> Walk<T> {
         let part = part.clamp(T::constant(MIN_FRACTION), T::constant(MAX_FRACTION));
         self.segment = (part * (end - last)).max(finest);
         self.shortened = true;
-        self.bounds(limits, stretch)
+        self.bounds(limits)
     }
 
     /// The next sample where nothing is proven.
     fn unproven_step(&mut self, limits: &Limits<T>) -> Next<T> {
-        let (zero, t_max) = (T::constant(0.0), self.ray.t_max);
+        let zero = T::constant(0.0);
         let (_, above) = self.outside.unwrap_or((zero, zero));
         self.unproven = true;
         let step = self.sampling_step(above, limits);
         self.evaluations += 1;
-        Next::At((self.t + step).min(t_max))
+        Next::At((self.t + step).min(self.end))
     }
 
     /// The ends of the segment whose bounds the ray waits for.
@@ -121,14 +114,6 @@ impl<T: Real> Walk<T> {
         let zero = T::constant(0.0);
         let (last, _) = self.outside.unwrap_or((zero, zero));
         [last, self.pending.unwrap_or(last)].map(|t| self.ray.at(t))
-    }
-
-    /// True if a ray need not be sampled where there is no surface.
-    pub(super) fn skips_free_cells(&self, limits: &Limits<T>) -> bool {
-        limits.method.skips_proven()
-            && !limits.records_clearance
-            && self.outside.is_some()
-            && self.inside.is_none()
     }
 
     /// How steep the field has been of late, with one more sample.

@@ -1,8 +1,8 @@
-//! Rays on their way through the cells of space.
+//! Marching rays by the steps of their method.
 
 use sdfc_graph::eval::Packet;
 
-use super::{Limits, Stretch, Trace, Walk};
+use super::{Limits, Trace, Walk};
 use crate::cpu::cells::{Cell, Cells};
 use crate::cpu::pre_intersection::PreIntersection;
 use crate::cpu::ray::{Batch, LANES, Ray, Real, packed_from};
@@ -24,21 +24,46 @@ struct Crossings<'c, T> {
 }
 
 /// The functions of rays in cells with one tape.
-struct Fields<'c, 'w, 'r, T> {
-    field: Batch<'c, T>,
+pub(super) struct Fields<'c, 'w, 'r, T> {
+    pub(super) field: Batch<'c, T>,
     /// Bounds of the field on a segment.
-    range: Option<&'w mut Batch<'r, T>>,
+    pub(super) range: Option<&'w mut Batch<'r, T>>,
 }
 
-/// Marches all rays; the result has their order. Rays in one cell are marched together.
-pub(crate) fn trace<T: Real>(
+/// Marches those of the rays that have these indices, and replaces their results.
+pub(super) fn march_some<'c, T: Real>(
+    cells: &'c Cells<'_>,
+    range: Option<&mut Batch<'_, T>>,
+    rays: &[Ray<T>],
+    known: Option<&[PreIntersection<T>]>,
+    limits: &Limits<T>,
+    indices: &[usize],
+    traces: &mut [Trace<'c, T>],
+) {
+    let chosen: Vec<Ray<T>> = indices.iter().map(|&index| rays[index]).collect();
+    let known: Option<Vec<_>> =
+        known.map(|known| indices.iter().map(|&index| known[index]).collect());
+    let found = march(cells, range, &chosen, known.as_deref(), limits);
+    for (&index, found) in indices.iter().zip(found) {
+        let evaluations = traces[index].evaluations + found.evaluations;
+        traces[index] = Trace { evaluations, ..found };
+    }
+}
+
+/// Marches rays along all of their length; the result has their order. Rays in one cell are marched
+/// together.
+pub(super) fn march<T: Real>(
     cells: &Cells<'_>,
     mut range: Option<&mut Batch<'_, T>>,
-    rays: &[(Ray<T>, PreIntersection<T>)],
+    rays: &[Ray<T>],
+    known: Option<&[PreIntersection<T>]>,
     limits: &Limits<T>,
-) -> Vec<Trace<T>> {
+) -> Vec<Trace<'static, T>> {
     let mut traces = vec![Trace::untraced(); rays.len()];
-    let mut walks: Vec<Walk<T>> = rays.iter().map(|&(ray, known)| Walk::new(ray, known)).collect();
+    let walk = |(index, ray): (usize, &Ray<T>)| {
+        Walk::new(*ray, known.map_or_else(|| PreIntersection::nothing(ray), |known| known[index]))
+    };
+    let mut walks: Vec<Walk<T>> = rays.iter().enumerate().map(walk).collect();
     let mut waiting = Vec::with_capacity(rays.len());
     for (index, walk) in walks.iter().enumerate() {
         if !walk.known.must_march() {
@@ -54,7 +79,6 @@ pub(crate) fn trace<T: Real>(
             let Some(&Crossing { cell, .. }) = crossings.first() else { continue };
             let mut fields = Fields { field: cells.evaluator(cell), range: range.as_deref_mut() };
             cross(crossings, &mut walks, &mut fields, limits, |index, walk, ended| {
-                let ended = ended.or_else(|| walk.past_free_cells(cells, limits));
                 if let Some(ended) = ended {
                     traces[index] = ended;
                     return None;
@@ -73,6 +97,29 @@ pub(crate) fn trace<T: Real>(
     traces
 }
 
+/// Marches rays in a cell, each from one position to another one. A ray that hits nothing there is
+/// a miss.
+pub(super) fn march_segments<T: Real>(
+    cell: &Cell,
+    fields: &mut Fields<'_, '_, '_, T>,
+    segments: &[(Ray<T>, [T; 2])],
+    limits: &Limits<T>,
+) -> Vec<Trace<'static, T>> {
+    let mut traces = vec![Trace::untraced(); segments.len()];
+    let mut walks: Vec<Walk<T>> =
+        segments.iter().map(|&(ray, segment)| Walk::along(ray, segment)).collect();
+    let span = [f64::NEG_INFINITY, f64::INFINITY].map(T::constant);
+    let crossings: Vec<_> =
+        (0..segments.len()).map(|index| Crossing { cell, index, span }).collect();
+    cross(&crossings, &mut walks, fields, limits, |index, _, ended| {
+        if let Some(ended) = ended {
+            traces[index] = ended;
+        }
+        None
+    });
+    traces
+}
+
 /// Marches rays in cells with one tape until they end or leave these cells. When a ray ends or
 /// leaves its cell, `next` returns its next crossing of a cell with this tape.
 fn cross<'c, T: Real>(
@@ -80,7 +127,7 @@ fn cross<'c, T: Real>(
     walks: &mut [Walk<T>],
     fields: &mut Fields<'_, '_, '_, T>,
     limits: &Limits<T>,
-    mut next: impl FnMut(usize, &mut Walk<T>, Option<Trace<T>>) -> Option<Crossing<'c, T>>,
+    mut next: impl FnMut(usize, &mut Walk<T>, Option<Trace<'static, T>>) -> Option<Crossing<'c, T>>,
 ) {
     let has_bounds = fields.range.is_some();
     let mut waiting =
@@ -91,11 +138,10 @@ fn cross<'c, T: Real>(
             if is_sample { fields.samples(&group, walks) } else { fields.bounds(&group, walks) };
         for (crossing, result) in group.drain(..).zip(results).rev() {
             let (walk, [enter, exit]) = (&mut walks[crossing.index], crossing.span);
-            let stretch = crossing.stretch(has_bounds, limits);
             let ended = if is_sample {
-                walk.take_sample(result, limits, &stretch)
+                walk.take_sample(result, limits, has_bounds)
             } else {
-                walk.take_bound(result, limits, &stretch)
+                walk.take_bound(result, limits)
             };
             // A position that is NaN has ended the ray.
             let leaves = ended.is_some() || walk.t < enter || walk.t >= exit;
@@ -145,34 +191,7 @@ impl<T: Real> Fields<'_, '_, '_, T> {
     }
 }
 
-impl<T: Real> Walk<T> {
-    /// Moves to the first cell that may contain a surface, if the ray need not be sampled before;
-    /// returns the result of a ray that finds none.
-    fn past_free_cells(&mut self, cells: &Cells<'_>, limits: &Limits<T>) -> Option<Trace<T>> {
-        while self.skips_free_cells(limits) {
-            let crossing = Crossing::new(cells, 0, self);
-            let [_, exit] = crossing.span;
-            if !crossing.cell.is_free() || exit <= self.t {
-                break;
-            }
-            self.t = exit;
-            if exit > self.end {
-                return Some(self.without_hit());
-            }
-        }
-        None
-    }
-}
-
 impl<'c, T: Real> Crossing<'c, T> {
-    fn stretch(&self, has_bounds: bool, limits: &Limits<T>) -> Stretch<T> {
-        if limits.records_clearance {
-            // A ray that records its clearance takes its samples wherever cells are.
-            return Stretch { end: T::constant(f64::INFINITY), is_free: false, has_bounds };
-        }
-        Stretch { end: self.span[1], is_free: self.cell.is_free(), has_bounds }
-    }
-
     /// The crossing of the cell around the next sample of a ray.
     fn new(cells: &'c Cells<'_>, index: usize, walk: &Walk<T>) -> Self {
         let ray = [walk.ray.origin, walk.ray.direction].map(|v| v.map(Into::into));
