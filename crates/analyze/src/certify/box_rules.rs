@@ -144,12 +144,17 @@ impl Rules {
     }
 
     /// The terms of a sum of numbers, and of the sums among them.
-    fn sum(&self, graph: &Graph, node: NodeId) -> Option<Rule> {
-        let (mut terms, mut pending) = (Vec::new(), vec![(self.index(node)?, 1.0)]);
+    fn sum(&self, graph: &mut Graph, root: NodeId) -> Option<Rule> {
+        let (mut terms, mut pending) = (Vec::new(), vec![(self.index(root)?, 1.0)]);
         while let Some((index, sign)) = pending.pop() {
+            let node = self.order[index];
             let is_full = terms.len() + pending.len() + 2 > MAX_TERMS;
-            match graph.node(self.order[index]) {
-                Node::Binary(op @ (Binary::Add | Binary::Sub), a, b) if !is_full => {
+            if is_full || node != root && has_own_rule(graph, node) {
+                terms.push((index, sign));
+                continue;
+            }
+            match graph.node(node) {
+                Node::Binary(op @ (Binary::Add | Binary::Sub), a, b) => {
                     let other = if op == Binary::Add { sign } else { -sign };
                     pending.extend([(self.index(a)?, sign), (self.index(b)?, other)]);
                 }
@@ -172,6 +177,13 @@ impl Rules {
         }
         Some(Rule::Sum(terms))
     }
+}
+
+/// True for a sum whose slope is known better than from its terms.
+fn has_own_rule(graph: &mut Graph, sum: NodeId) -> bool {
+    graph.as_soft_extreme(sum).is_some()
+        || corner_distance(graph, sum).is_some()
+        || graph.lipschitz_claim(sum).is_some()
 }
 
 fn unary(op: Unary, a: usize) -> Option<Rule> {

@@ -96,7 +96,11 @@ pub(crate) fn steepest_within(
 
 /// The smallest box that holds the bounds for all values of the params; `None` if it is empty or
 /// infinite.
-fn region(graph: &Graph, bounds: [NodeId; 2], ranges: &FrameValues<Interval>) -> Option<Region> {
+pub(super) fn region(
+    graph: &Graph,
+    bounds: [NodeId; 2],
+    ranges: &FrameValues<Interval>,
+) -> Option<Region> {
     let tape = Tape::new(graph, &bounds).ok()?;
     let mut corners = tape.prepare_in(ranges);
     let [lo, hi] = corners.eval([Interval::ENTIRE; 3]) else { return None };
@@ -166,7 +170,8 @@ impl Search<'_> {
             splits += 1;
             for half in self.halves(&worst.region) {
                 let cell = self.cell(half, &mut reached);
-                cells.push(cell);
+                // What holds in a box holds in its halves.
+                cells.push(Cell { limit: cell.limit.min(worst.limit), ..cell });
             }
         }
         while self.refinements > 0 && cells.peek().is_some_and(|worst| !worst.is_refined) {

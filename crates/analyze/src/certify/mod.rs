@@ -17,3 +17,4 @@ pub(crate) mod piecewise;
 pub(crate) mod promise;
 pub(crate) mod quality;
 pub(crate) mod reason;
+pub(crate) mod suggest;
