@@ -2,8 +2,8 @@
 //!
 //! They cover formulas that the rules of [`crate::certify::lipschitz`] do not, such as products of
 //! coordinates. The gradient is evaluated over intervals. The box with the largest upper bound gets
-//! another one from its operations ([`crate::certify::box_norms`]), and is split if it still has the
-//! largest, until another split gains little. Params have the intervals of their ranges, so the
+//! another one from its operations ([`crate::certify::box_norms`]), and is split if it still has
+//! the largest, until another split gains little. Params have the intervals of their ranges, so the
 //! constant holds for all of their values.
 
 use std::collections::BinaryHeap;
