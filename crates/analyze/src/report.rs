@@ -83,7 +83,7 @@ pub enum Lipschitz {
     /// The constant depends on params, time or the frame number.
     PerFrame,
     /// There is no known constant, for this reason.
-    Unknown(String),
+    Unknown(Reason),
 }
 
 /// Reports on every shape of a scene.
@@ -108,7 +108,7 @@ pub(crate) fn shape_reports(
         jumps.extend(jump.map(|what| (shape, what)));
         let lipschitz = match &quality.lipschitz {
             Ok(node) => graph.as_number(*node).map_or(Lipschitz::PerFrame, Lipschitz::Number),
-            Err(reason) => Lipschitz::Unknown(reason.to_string()),
+            Err(reason) => Lipschitz::Unknown(reason.clone()),
         };
         let divided = divided.contains(&shape);
         let from_interval_derivatives = quality.local_bounds.is_some();

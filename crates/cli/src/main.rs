@@ -39,6 +39,10 @@ fn main() -> ExitCode {
 }
 
 fn run(args: &Args, console: &Console) -> Result<(), Failure> {
+    if args.global.quiet && args.global.verbose {
+        let message = "`--quiet` prints only errors and `--verbose` prints more: write one of them";
+        return Err(Failure::Call(message.to_owned()));
+    }
     match &args.command {
         Command::New(args) => commands::new::run(args, console),
         Command::Check(args) => commands::check::run(args, console),

@@ -65,6 +65,11 @@ fn charts_that_would_overwrite_files_are_refused() {
     std::fs::create_dir_all(folder.path().join("out")).unwrap();
     std::fs::write(folder.path().join("b/a.sdf"), BALL).unwrap();
     let refused = |args: &str, word: &str| ends(folder.path(), args, b"", 2, &[word]);
+    // Each says what to write.
+    refused("mesh a.sdf --error -1", "expected a number above 0, such as 0.01");
+    refused("contour a.sdf --error-relative -1", "expected a number above 0, such as 0.01");
+    refused("check a.sdf -q -v", "write one of them");
+    refused("explain a.sdf --set opn=", "expected NAME=VALUE, such as wall=0.1");
     refused("chart a.sdf -o .", "README.md is not a page of charts");
     refused("chart a.sdf b/a.sdf -o out", "two of the scenes are called a");
     refused("chart a.sdf -o out --json f.json", "--json is for one scene without a folder");
@@ -277,4 +282,31 @@ fn ctrl_c_leaves_no_partial_animation() {
     Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
     assert_eq!(child.wait_with_output().unwrap().status.code(), Some(130));
     assert!(names(folder.path()).iter().all(|name| name == "a.sdf" || name.starts_with("z.0")));
+}
+
+#[test]
+fn a_misspelt_param_is_answered_with_its_name() {
+    let folder = folder(&[("door.sdf", "param open = 0.5 in 0..1\nsphere(open)\n")]);
+    let words = ["the scene has no param `opn`; did you mean `open`?"];
+    ends(folder.path(), "explain door.sdf --set opn=1", b"", 2, &words);
+}
+
+#[test]
+fn names_of_openscad_are_answered() {
+    wrong("module foo() = 1\nsphere(1)\n", &["`fn foo(x) = ...`", "`solid foo() = ...`"]);
+    wrong("include <a.scad>\nsphere(1)\n", &["`import name from \"file.sdf\"`"]);
+    wrong("hull(box(1))\n", &["there is no convex hull", "`round_cone(a, b, r1, r2)`"]);
+    wrong("minkowski(box(1), sphere(1))\n", &["`a.round(0.1)`"]);
+    wrong("round_cone(ra: 1, rb: 2)\n", &["did you mean `r1`?", "did you mean `r2`?"]);
+}
+
+#[test]
+fn copies_without_limits_are_cut() {
+    let scene = |cut: &str| {
+        format!("repeat(fn(c) = star(5, r: 0.1 + 0.1 * hash(1, c)){cut}, spacing: 1)\n")
+    };
+    wrong(&scene(""), &["cut them with `& circle(0.2)`"]);
+    let folder = folder(&[]);
+    ends(folder.path(), "check -", scene(" & circle(0.2)").as_bytes(), 0, &[]);
+    wrong("repeat(plane(), spacing: 1)\n", &["cut them with `& sphere(0.2)`"]);
 }

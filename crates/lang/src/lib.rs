@@ -58,6 +58,7 @@ use check::{SceneFile, SceneFiles};
 pub use check::{check, check_library, check_with_imports};
 pub use elab::{Claimed, CompileValues, Declared, DeclaredPromise, Elaborated, Site};
 pub use import::{NoFiles, Resolver};
+pub use spelling::nearest as nearest_name;
 
 /// Parses, checks and elaborates a scene without imports.
 ///

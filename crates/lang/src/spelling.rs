@@ -35,6 +35,10 @@ pub fn meant<'n>(name: &str, names: impl Iterator<Item = &'n str>) -> Option<Mea
     synonyms::respelt(name, &names)
         .map(ask)
         .or_else(|| synonyms::here(name).map(here))
+        .or_else(|| {
+            let [message, instead] = synonyms::absent(name)?.map(str::to_owned);
+            Some(Meant { message, instead })
+        })
         .or_else(|| nearest(name, names.into_iter()).map(ask))
 }
 

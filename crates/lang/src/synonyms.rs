@@ -116,10 +116,28 @@ const ROWS: &[(&str, &str)] = &[
     ("#ffd700", "gold"),
 ];
 
+/// Operations of other tools that have no equivalent: the name, the message, and the expression
+/// that comes nearest.
+const ABSENT: &[(&str, &str, &str)] = &[
+    (
+        "hull",
+        "there is no convex hull: `round_cone(a, b, r1, r2)` is that of two spheres, \
+         `union(a, b, blend: smooth(0.2))` joins shapes smoothly",
+        "union(a, b, blend: smooth(0.2))",
+    ),
+    (
+        "minkowski",
+        "there is no Minkowski sum: `a.round(0.1)` is that of a shape and a sphere",
+        "a.round(0.1)",
+    ),
+];
+
 /// A parameter, and the names that other tools have for such a parameter, spelt like those of
 /// [`ROWS`].
 const PARAMETERS: &[(&str, &str)] = &[
     ("r", "radius rad diameter size"),
+    ("r1", "ra radius1 rbottom"),
+    ("r2", "rb radius2 rtop"),
     ("h", "height length tall"),
     ("size", "dimensions dimension extents sides lengths scale"),
     ("wall", "thickness thick"),
@@ -150,6 +168,14 @@ pub fn parameter<'n>(name: &str, names: &[&'n str]) -> Option<&'n str> {
     };
     let (here, _) = PARAMETERS.iter().find(meant)?;
     names.iter().copied().find(|own| own == here)
+}
+
+/// The message about an operation of other tools that has no equivalent, and the expression that
+/// comes nearest.
+pub fn absent(name: &str) -> Option<[&'static str; 2]> {
+    let name = plain(name);
+    let (_, message, nearest) = ABSENT.iter().find(|(other, ..)| *other == name)?;
+    Some([message, nearest])
 }
 
 /// The blend that other tools mean by a number behind the operands of a union.
@@ -245,6 +271,12 @@ mod tests {
         assert_eq!(here("linear_extrude"), Some("extrude"));
         assert_eq!(here("ln"), Some("log"));
         assert_eq!(here("teapot"), None);
+        assert!(absent("hull").is_some_and(|[message, _]| message.contains("round_cone")));
+        assert!(absent("minkowski").is_some_and(|[message, _]| message.contains("a.round(0.1)")));
+        assert_eq!(absent("box"), None);
+        // The two radii of a cone, in the order of Quilez's functions.
+        assert_eq!(parameter("ra", &["a", "b", "r1", "r2"]), Some("r1"));
+        assert_eq!(parameter("rb", &["a", "b", "r1", "r2"]), Some("r2"));
         let names = ["round_cone", "pi", "twist"];
         assert_eq!(respelt("sdRoundCone", &names), Some("round_cone"));
         assert_eq!(respelt("PI", &names), Some("pi"));

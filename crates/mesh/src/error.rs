@@ -100,7 +100,7 @@ pub enum MeshError {
     #[error(
         "the error {} is too small for this scene; the smallest possible one is {}",
         shown(*error),
-        shown(*least)
+        shown_above(*least)
     )]
     TooFine {
         /// The error that was asked for.
@@ -171,10 +171,19 @@ pub enum MeshError {
     Cancelled,
 }
 
-/// Returns a number with at most 17 digits: very large and very small ones with an exponent.
+/// Returns a number with at most six significant digits: very large and very small ones with an
+/// exponent.
 pub(crate) fn shown(value: f64) -> String {
     let is_plain = value == 0.0 || (1e-5..1e16).contains(&value.abs());
-    if is_plain || !value.is_finite() { value.to_string() } else { format!("{value:e}") }
+    // Parsing drops the zeros at the end.
+    let short: f64 = format!("{value:.5e}").parse().unwrap_or(value);
+    if is_plain || !value.is_finite() { short.to_string() } else { format!("{short:e}") }
+}
+
+/// As [`shown`], but no less than the number.
+fn shown_above(value: f64) -> String {
+    let short: f64 = format!("{value:.5e}").parse().unwrap_or(value);
+    shown(if short < value { value * (1.0 + 1e-5) } else { value })
 }
 
 impl MeshError {
@@ -209,6 +218,11 @@ mod tests {
         let expected = ["0", "2", "0.002", "1000000000000000", "1e300", "5e-324", "-1.25e-9"];
         for (value, expected) in values.into_iter().zip(expected) {
             assert_eq!(shown(value), expected);
+        }
+        assert_eq!(shown(8.000000000000001e-6), "8e-6");
+        assert_eq!(shown(0.1 + 0.2), "0.3");
+        for value in [8.123456789e-6, 8.000000000000001e-6, 0.001] {
+            assert!(shown_above(value).parse::<f64>().is_ok_and(|shown| shown >= value));
         }
         let message = MeshError::TooCoarse { error: 1e300, longest: 2.0 }.to_string();
         assert!(message.len() < 120, "{message}");

@@ -12,7 +12,7 @@ use crate::scene::Scene;
 #[non_exhaustive]
 pub enum ParamError {
     /// The scene has no param with this name.
-    #[error("the scene has no param `{name}`; {}", known_params(known))]
+    #[error("the scene has no param `{name}`; {}", known_params(name, known))]
     Unknown {
         /// The name.
         name: String,
@@ -50,7 +50,10 @@ pub enum ParamError {
     },
 }
 
-fn known_params(known: &[String]) -> String {
+fn known_params(name: &str, known: &[String]) -> String {
+    if let Some(near) = sdfc_lang::nearest_name(name, known.iter().map(String::as_str)) {
+        return format!("did you mean `{near}`?");
+    }
     match known {
         [] => "it has no params".to_owned(),
         known => format!("it has {}", known.join(", ")),

@@ -472,6 +472,10 @@ impl Painter<'_> {
         } else {
             "the rays ran out of steps"
         };
+        let why = match self.scene.steepest_shape() {
+            Some(shape) if pixels.unproven <= pixels.capped => format!("{why}; {shape}"),
+            Some(_) | None => why.to_owned(),
+        };
         if pixels.loops_ended > 0 {
             return Some(format!(
                 "{} of {all} pixels may be wrong: the driver ended their loops early, as \

@@ -49,6 +49,25 @@ impl Scene {
         rows
     }
 
+    /// Says which shape has the largest Lipschitz constant and what to do about it, if that makes
+    /// steps shorter.
+    pub(crate) fn steepest_shape(&self) -> Option<String> {
+        let constant = |shape: &&ShapeReport| match shape.lipschitz {
+            Lipschitz::Number(constant) => constant,
+            Lipschitz::PerFrame | Lipschitz::Unknown(_) => 0.0,
+        };
+        let divided = self.report.shapes.iter().filter(|shape| shape.divided);
+        let steepest = divided.max_by(|a, b| constant(a).total_cmp(&constant(b)))?;
+        let factor = constant(&steepest);
+        let name = &self.graph().graph.shape(steepest.shape).definition;
+        (factor >= 2.0).then(|| {
+            format!(
+                "steps are {factor:.3} times shorter because of the Lipschitz constant of \
+                 `{name}`: make it less steep, or state a smaller `lipschitz` if one holds"
+            )
+        })
+    }
+
     /// Returns the results of the analysis, without the location.
     pub(crate) fn quality_row(&self, shape: &ShapeReport, name: &str) -> QualityRow {
         let uncertified = self.report.uncertified.iter().find(|u| u.shape == shape.shape);
@@ -61,7 +80,7 @@ impl Scene {
             (Lipschitz::Unknown(_), None) if shape.sides.is_bound() => {
                 Some("a bound; it needs no constant".to_owned())
             }
-            (Lipschitz::Unknown(reason), None) => Some(reason.clone()),
+            (Lipschitz::Unknown(reason), None) => Some(reason.to_string()),
             (_, None) if shape.from_interval_derivatives => {
                 Some("constant from interval derivatives within its bounds".to_owned())
             }

@@ -66,13 +66,80 @@ fn no_clause_of_the_library_is_refuted() {
 #[test]
 fn a_field_without_a_constant_is_a_warning_with_its_reason() {
     let found = diagnostics("solid odd() = p.x * p.y - 0.1\nsphere(1)\nodd() | box(1)");
-    let reason = "`odd` is uncertified: the slope of `*` depends on the point, and no limit of it is known; state \
-         `lipschitz`, or finite `bounds` that limit it";
+    let reason =
+        "`odd` is uncertified: the slope of `*` depends on the point, and no limit of it is known";
     assert_eq!(found, [("W0602", 3, reason.to_owned())]);
     // A problem of a shape that an entry of the library builds is reported at the scene's call.
     assert_eq!(codes("sphere(1)\nbox(1)\n  - plane().twist(20deg)"), [("W0602", 3)]);
     assert_eq!(codes("param k = 20deg in 0deg..90deg\nplane().twist(k)"), [("W0602", 2)]);
     assert_eq!(codes("box([0.6, 2, 0.6]).twist(20deg)\nsphere(1)"), []);
+}
+
+/// Returns the helps of the warnings W0602.
+fn helps(text: &str) -> Vec<String> {
+    let found = Compiler::new().check("scene.sdf", text);
+    let about = found.iter().filter(|diagnostic| diagnostic.code.0 == "W0602");
+    about.flat_map(|diagnostic| diagnostic.help.clone()).collect()
+}
+
+#[test]
+fn writing_the_help_of_an_uncertified_shape_certifies_it() {
+    // The clause to write is the help's first code, and goes before the first `=`.
+    let own = [
+        "solid s() = p.y - p.x * p.x * p.z\ns() & box(2)",
+        "solid s()\n  bounds -1..1\n  = {\n    let d = dot(p, [1, 2, 3])\n    \
+         max(d * d * d - 0.1, length(p) - 0.9)\n  }\ns()",
+        "solid s() = {\n  let d = dot(p, [1, 2, 3])\n  d * d * d - 0.1\n}\ns() & box(2)",
+        "solid s() = exp(p.x) - 2 * p.y\ns() & box(2)",
+        "solid s()\n  bounds -1 .. 1\n  = max(p.x * p.y - 0.1, length(p) - 0.8)\n\
+         union(s(), sphere(0.7), blend: smooth(0.2))",
+        "solid s() = if p.x > 0.3 { length(p) - 1 } else { length(p) - 1.5 }\ns()",
+    ];
+    for text in own {
+        let helps = helps(text);
+        let [help] = &helps[..] else { panic!("{helps:?}\n{text}") };
+        let line = help.split("write `").nth(1).and_then(|rest| rest.split('`').next());
+        let Some(line) = line else { panic!("no line in {help}\n{text}") };
+        let fixed = text.replacen('=', &format!("{line}\n  ="), 1);
+        let left: Vec<_> = codes(&fixed).into_iter().filter(|(code, _)| *code != "E0502").collect();
+        assert_eq!(left, [], "{fixed}\n{help}");
+    }
+    // Such bounds are enough for a sum with a box.
+    assert_eq!(codes("solid s() bounds -1..1 = box(1)(p) - 0.05 * p.x * p.y\ns()"), []);
+    // What a call of the library needs, written into the call.
+    let calls = [
+        ("plane().twist(20deg)", "(plane() & box(4)).twist(20deg)", "`(a & box(4)).twist(...)`"),
+        (
+            "plane().twist(20deg).translate(x: 1).scale([1, 2, 1])",
+            "(plane() & box(4)).twist(20deg).translate(x: 1).scale([1, 2, 1])",
+            "`twist`: limit the shape first, for example `(a & box(4)).twist(...)`",
+        ),
+        (
+            "heightfield(fn(q) = 0.1 * q.x * q.y) & box(2)",
+            "heightfield(fn(q) lipschitz 1 = 0.1 * q.x * q.y) & box(2)",
+            "`fn(q) lipschitz 1 = ...`",
+        ),
+        (
+            "sphere(1).displace(fn(q) = 0.1 * q.x * q.y)",
+            "sphere(1).displace(fn(q) lipschitz 1 = 0.1 * q.x * q.y)",
+            "`fn(q) lipschitz 1 = ...`",
+        ),
+        (
+            "sphere(1).displace(fn(q) = 0.1 * fract(q.x))",
+            "sphere(1).displace(fn(q) = 0.1 * sin(q.x))",
+            "such as `sin`, in place of `fract`",
+        ),
+        (
+            "sphere(1).displace(fn(q) = 0.1 * hash(1, q))",
+            "sphere(1).displace(fn(q) = 0.1 * gradient_noise(q))",
+            "such as `gradient_noise`, in place of `hash`",
+        ),
+    ];
+    for (text, fixed, advice) in calls {
+        let helps = helps(text);
+        assert!(helps.iter().any(|help| help.contains(advice)), "{helps:?}\n{text}");
+        assert!(!codes(fixed).iter().any(|(code, _)| *code == "W0602"), "{fixed}");
+    }
 }
 
 #[test]

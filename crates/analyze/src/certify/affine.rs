@@ -242,6 +242,14 @@ pub(crate) fn operator_norm(graph: &mut Graph, linear: &Linear) -> Option<NodeId
     }
 }
 
+/// The operator norm of a matrix that does not depend on the point; `None` if it is not known.
+pub(crate) fn matrix_norm(graph: &mut Graph, columns: [NodeId; 3]) -> Option<NodeId> {
+    let lanes = graph.ty(columns[0]).width();
+    let columns = columns.map(|column| lanes_of(graph, column));
+    let linear = Linear::new(lanes, |lane| columns.map(|column| column[lane]));
+    operator_norm(graph, &linear)
+}
+
 fn constant_rows(linear: &Linear) -> Option<Vec<[f64; 3]>> {
     let row_of = |&[x, y, z]: &Row| Some([x.number()?, y.number()?, z.number()?]);
     linear.rows().iter().map(row_of).collect()

@@ -14,10 +14,10 @@ use crate::certify::affine;
 use crate::certify::components::Components;
 use crate::certify::corner::corner_distance;
 use crate::certify::maps::Maps;
-use crate::certify::mixed_lanes;
 use crate::certify::norms::{
     hypotenuse, is_zero, largest_lane, max_repeats, with_annotated_arguments,
 };
+use crate::certify::piecewise;
 use crate::certify::reason::{Constant, Reason};
 
 /// Largest number of loop iterations that are followed to see how far a constant grows.
@@ -74,7 +74,10 @@ impl Slopes {
             (None, Node::Loop(id, position, _)) => {
                 self.after_loop(graph, id, level, shapes).map(|all| all[usize::from(position)])
             }
-            (None, _) => self.by_rule(graph, node, level, shapes),
+            (None, _) => {
+                let rule = self.by_rule(graph, node, level, shapes);
+                rule.map(|rule| self.folded(graph, node, rule))
+            }
         };
         let constant = self.with_claim(graph, node, constant);
         self.constants.insert(node, constant);
@@ -205,6 +208,26 @@ impl Slopes {
                 Ok(graph.mul(outer, inner))
             }
             Node::MaterialAt(..) => Err(Reason::Unbounded("material_at")),
+        }
+    }
+
+    /// The smaller one of the constant by a rule and the constant of the node as a piecewise linear
+    /// map, for operations that combine several values.
+    fn folded(&self, graph: &mut Graph, node: NodeId, rule: NodeId) -> NodeId {
+        let combines = matches!(
+            graph.node(node),
+            Node::Compose(..)
+                | Node::Transform(..)
+                | Node::Binary(Binary::Add | Binary::Sub | Binary::Min | Binary::Max, ..)
+                | Node::Ternary(Ternary::Mix | Ternary::Clamp, _)
+        );
+        if !combines || graph.as_number(rule).is_some_and(|rule| rule <= 1.0) {
+            return rule;
+        }
+        let known = |id| self.constants.get(&id).and_then(|constant| constant.clone().ok());
+        match piecewise::constant(graph, node, self.maps.level(), &known) {
+            Some(constant) => graph.min(rule, constant),
+            None => rule,
         }
     }
 
@@ -423,31 +446,28 @@ impl Slopes {
 
     /// The constant of a vector of lanes. If the lanes depend on different components of the point,
     /// it is the largest constant of a lane, since the squares of the changes add up to no more
-    /// than the square of the point's change. Otherwise it is the hypotenuse of the constants, or
-    /// less if the lanes are linear combinations of folded values.
+    /// than the square of the point's change. Otherwise it is the hypotenuse of the constants.
     fn compose(&self, graph: &mut Graph, parts: &[NodeId]) -> Constant {
-        let constants: Vec<NodeId> =
+        let lanes: Vec<NodeId> =
             parts.iter().map(|&part| self.constant(part)).collect::<Result<_, _>>()?;
         if self.components.are_disjoint(parts) {
-            return Ok(constants.into_iter().reduce(|x, y| graph.max(x, y)).unwrap_or(parts[0]));
+            return Ok(lanes.into_iter().reduce(|x, y| graph.max(x, y)).unwrap_or(parts[0]));
         }
-        let joined = hypotenuse(graph, &constants);
-        match mixed_lanes::constant(graph, parts, self.maps.level()) {
-            Some(together) => {
-                let together = graph.number(together);
-                Ok(graph.min(joined, together))
-            }
-            None => Ok(joined),
-        }
+        Ok(hypotenuse(graph, &lanes))
     }
 
     fn transform(&self, graph: &mut Graph, columns: [NodeId; 3], v: NodeId) -> Constant {
         if columns.iter().any(|&column| graph.stage(column) == Stage::Point) {
             return Err(Reason::Unbounded("*"));
         }
-        // The Frobenius norm is an upper bound of the largest singular value.
-        let lengths = columns.map(|column| graph.length(column));
-        let factor = hypotenuse(graph, &lengths);
+        let factor = match affine::matrix_norm(graph, columns) {
+            Some(norm) => norm,
+            None => {
+                // The Frobenius norm is an upper bound of the largest singular value.
+                let lengths = columns.map(|column| graph.length(column));
+                hypotenuse(graph, &lengths)
+            }
+        };
         let inner = self.constant(v)?;
         Ok(graph.mul(factor, inner))
     }
@@ -455,7 +475,7 @@ impl Slopes {
 
 /// The steepest slope of a function within a range. `None` if it has none there, or if another rule
 /// holds everywhere.
-fn steepest_slope(op: Unary, range: Range) -> Option<f64> {
+pub(super) fn steepest_slope(op: Unary, range: Range) -> Option<f64> {
     let steepest = match op {
         Unary::Sqrt if range.lo > 0.0 => 0.5 / range.lo.sqrt(),
         Unary::InverseSqrt if range.lo > 0.0 => 0.5 * range.lo.powf(-1.5),

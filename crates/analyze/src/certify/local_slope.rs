@@ -1,14 +1,17 @@
 //! Lipschitz constants within a box, by interval derivatives.
 //!
 //! They cover formulas that the rules of [`crate::certify::lipschitz`] do not, such as products of
-//! coordinates. The gradient is evaluated over intervals. The box with the largest upper bound is
-//! split until another split gains little. Params have the intervals of their ranges, so the
+//! coordinates. The gradient is evaluated over intervals. The box with the largest upper bound gets
+//! another one from its operations ([`crate::certify::box_norms`]), and is split if it still has
+//! the largest, until another split gains little. Params have the intervals of their ranges, so the
 //! constant holds for all of their values.
 
 use std::collections::BinaryHeap;
 
-use sdfc_graph::eval::{BranchPath, Evaluator, FrameValues, Interval, Tape};
+use sdfc_graph::eval::{BranchPath, Dual, Evaluator, FrameValues, Interval, Tape};
 use sdfc_graph::{Expander, Graph, NodeId, Param, ShapeId, gradient};
+
+use crate::certify::box_norms::BoxNorms;
 
 /// Budget of one shape's search, in scalar operations.
 const OPERATIONS: usize = 1_000_000;
@@ -71,23 +74,33 @@ pub(crate) fn steepest_within(
     if cost.saturating_mul(most) > *budget {
         return None;
     }
+    let norms = BoxNorms::new(graph, field);
+    let norm_cost = norms.as_ref().map_or(1, BoxNorms::cost);
     let [field, slope] = &tapes;
     let mut search = Search {
         field: field.prepare_in(&ranges),
         slope: slope.prepare_in(&ranges),
+        norms: norms.as_ref().map(|norms| (norms, norms.prepare(&ranges))),
+        refinements: OPERATIONS.min(*budget - cost * most) / norm_cost,
         path: BranchPath::default(),
         axes: dim.point_type().width(),
         evaluations: 0,
+        refined: 0,
     };
     let largest = search.run(region, boxes);
     let slope = largest.map(|largest| Slope { largest, median: search.median(region) });
     *budget -= cost * search.evaluations.min(most);
+    *budget = budget.saturating_sub(norm_cost * search.refined);
     slope
 }
 
 /// The smallest box that holds the bounds for all values of the params; `None` if it is empty or
 /// infinite.
-fn region(graph: &Graph, bounds: [NodeId; 2], ranges: &FrameValues<Interval>) -> Option<Region> {
+pub(super) fn region(
+    graph: &Graph,
+    bounds: [NodeId; 2],
+    ranges: &FrameValues<Interval>,
+) -> Option<Region> {
     let tape = Tape::new(graph, &bounds).ok()?;
     let mut corners = tape.prepare_in(ranges);
     let [lo, hi] = corners.eval([Interval::ENTIRE; 3]) else { return None };
@@ -101,6 +114,8 @@ fn region(graph: &Graph, bounds: [NodeId; 2], ranges: &FrameValues<Interval>) ->
 struct Cell {
     limit: f64,
     region: Region,
+    /// True if the operations of the field give no lower bound, or have been asked for it.
+    is_refined: bool,
 }
 
 impl PartialEq for Cell {
@@ -126,6 +141,10 @@ impl Ord for Cell {
 struct Search<'t> {
     field: Evaluator<'t, Interval>,
     slope: Evaluator<'t, Interval>,
+    norms: Option<(&'t BoxNorms, Evaluator<'t, Dual<Interval>>)>,
+    /// The number of boxes that may still be bounded by `norms`, and of those that were.
+    refinements: usize,
+    refined: usize,
     path: BranchPath,
     axes: usize,
     /// The number of boxes and points that were evaluated.
@@ -137,19 +156,42 @@ impl Search<'_> {
         // The largest gradient length that certainly occurs.
         let mut reached: f64 = 0.0;
         let mut cells = BinaryHeap::from([self.cell(region, &mut reached)]);
-        for _ in 0..boxes {
+        let mut splits = 0;
+        while splits < boxes {
             let worst = cells.pop()?;
             if worst.limit <= reached * (1.0 + TOLERANCE) {
                 cells.push(worst);
                 break;
             }
+            if !worst.is_refined && self.refinements > 0 {
+                cells.push(self.refined(worst));
+                continue;
+            }
+            splits += 1;
             for half in self.halves(&worst.region) {
                 let cell = self.cell(half, &mut reached);
-                cells.push(cell);
+                // What holds in a box holds in its halves.
+                cells.push(Cell { limit: cell.limit.min(worst.limit), ..cell });
             }
+        }
+        while self.refinements > 0 && cells.peek().is_some_and(|worst| !worst.is_refined) {
+            let worst = cells.pop()?;
+            cells.push(self.refined(worst));
         }
         let limit = cells.pop()?.limit;
         limit.is_finite().then_some(limit)
+    }
+
+    /// The box with the bound that the operations of the field give, if it is lower.
+    fn refined(&mut self, cell: Cell) -> Cell {
+        self.refinements -= 1;
+        self.refined += 1;
+        let at = cell.region.map(|[lo, hi]| Interval::new(lo, hi));
+        let Some((norms, evaluator)) = &mut self.norms else {
+            return Cell { is_refined: true, ..cell };
+        };
+        let limit = cell.limit.min(norms.slope(evaluator, at));
+        Cell { limit, is_refined: true, ..cell }
     }
 
     /// The median of the slopes at evenly spaced points of a region.
@@ -177,11 +219,11 @@ impl Search<'_> {
         self.path.clear();
         self.field.scalar_along(at, &mut self.path);
         if self.path.is_open() {
-            return Cell { limit: f64::INFINITY, region };
+            return Cell { limit: f64::INFINITY, region, is_refined: true };
         }
         let (shortest, limit) = self.lengths(at);
         *reached = reached.max(shortest);
-        Cell { limit, region }
+        Cell { limit, region, is_refined: self.norms.is_none() }
     }
 
     /// Lower and upper bound of the gradient's length on a box.

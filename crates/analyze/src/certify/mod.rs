@@ -1,6 +1,9 @@
 //! The promises and constants of shapes, and the conservative field that rays march.
 
 pub(crate) mod affine;
+pub(crate) mod box_norms;
+pub(crate) mod box_rules;
+pub(crate) mod branches;
 pub(crate) mod components;
 pub(crate) mod conservative;
 pub(crate) mod corner;
@@ -9,8 +12,9 @@ pub(crate) mod inexact;
 pub(crate) mod lipschitz;
 pub(crate) mod local_slope;
 pub(crate) mod maps;
-pub(crate) mod mixed_lanes;
 pub(crate) mod norms;
+pub(crate) mod piecewise;
 pub(crate) mod promise;
 pub(crate) mod quality;
 pub(crate) mod reason;
+pub(crate) mod suggest;

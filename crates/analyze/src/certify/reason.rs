@@ -28,17 +28,13 @@ impl std::fmt::Display for Reason {
         match self {
             Self::Jump(what) => write!(f, "`{what}` of a value that depends on the point jumps"),
             Self::Unbounded(what) => {
-                write!(
-                    f,
-                    "the slope of `{what}` depends on the point, and no limit of it is known; state \
-                     `lipschitz`, or finite `bounds` that limit it"
-                )
+                write!(f, "the slope of `{what}` depends on the point, and no limit of it is known")
             }
             Self::SteepInPlaces(what) => {
                 write!(
                     f,
                     "the largest slope of `{what}` is many times its typical slope, so dividing by it \
-                     would cost more than it saves; state `lipschitz`, or tighter `bounds`"
+                     would cost more than it saves"
                 )
             }
             Self::Varying(name) => write!(f, "`{name}` is another shape at each point"),

@@ -60,7 +60,8 @@ pub struct Measure {
     pub file: PathBuf,
     /// Measure the volume to this fraction of itself; the center of mass and the extent to this
     /// fraction of the longest side of the scene's bounds
-    #[arg(long, value_name = "FRACTION", default_value_t = 0.001, value_parser = length)]
+    #[arg(long, value_name = "FRACTION", default_value_t = 0.001, value_parser = length,
+          allow_negative_numbers = true)]
     pub error_relative: f64,
     /// Measure the smallest distance between two solids instead, by their names in the scene
     #[arg(long, value_name = "NAME", num_args = 2)]
@@ -101,10 +102,11 @@ pub struct Bake {
 pub struct Exactness {
     /// Greatest distance between the surface and the mesh or contour, in scene units, in both
     /// directions
-    #[arg(long, value_name = "LENGTH", value_parser = length, conflicts_with = "error_relative")]
+    #[arg(long, value_name = "LENGTH", value_parser = length, allow_negative_numbers = true,
+          conflicts_with = "error_relative")]
     pub error: Option<f64>,
     /// The same, as a fraction of the longest side of the scene's bounds [default: 0.001]
-    #[arg(long, value_name = "FRACTION", value_parser = length)]
+    #[arg(long, value_name = "FRACTION", value_parser = length, allow_negative_numbers = true)]
     pub error_relative: Option<f64>,
     /// Most cells that are examined
     #[arg(long, value_name = "N")]

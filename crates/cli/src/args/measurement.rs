@@ -86,7 +86,7 @@ pub struct Tune {
     /// The scene; `-` is stdin
     pub file: PathBuf,
     /// Greatest error in depth (99th percentile), in widths of a pixel
-    #[arg(long, value_name = "PX", value_parser = pixel_widths)]
+    #[arg(long, value_name = "PX", value_parser = pixel_widths, allow_negative_numbers = true)]
     pub max_error: f64,
     /// Output file for all measurements, as JSON like that of `chart`; `-` is stdout
     #[arg(long, value_name = "OUT.json")]

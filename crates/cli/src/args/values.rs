@@ -82,9 +82,12 @@ pub(super) fn described(method: Method) -> PossibleValue {
 
 /// Parses `NAME=VALUE`.
 pub(super) fn assignment(text: &str) -> Result<Assignment, String> {
-    let (name, value) =
-        text.split_once('=').ok_or("expected NAME=VALUE, such as wall=0.1 or tilt=90deg")?;
-    Ok(Assignment { name: name.trim().to_owned(), value: value.trim().to_owned() })
+    let (name, value) = text.split_once('=').unwrap_or((text, ""));
+    let (name, value) = (name.trim(), value.trim());
+    if name.is_empty() || value.is_empty() {
+        return Err("expected NAME=VALUE, such as wall=0.1 or tilt=90deg".to_owned());
+    }
+    Ok(Assignment { name: name.to_owned(), value: value.to_owned() })
 }
 
 /// Parses a plane: `z=0.5`, or `1,1,0=2` with a normal.
@@ -151,6 +154,15 @@ mod tests {
         assert_eq!(plane("1, 1,0 = -2"), Ok(Plane::new([1.0, 1.0, 0.0], -2.0).unwrap()));
         for wrong in ["", "z", "z=", "w=1", "1,2=3", "0,0,0=1", "1,2,3,4=5", "z=inf", "z=1=2"] {
             assert!(plane(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn assignments_need_a_name_and_a_value() {
+        let parsed = assignment(" tilt = 90deg ").unwrap();
+        assert_eq!([&parsed.name[..], &parsed.value[..]], ["tilt", "90deg"]);
+        for wrong in ["", "tilt", "tilt=", "=1", " = "] {
+            assert!(assignment(wrong).is_err(), "{wrong}");
         }
     }
 

@@ -166,7 +166,8 @@ impl<'p> Elaborator<'p> {
     }
 }
 
-/// A number for messages, with at most six digits after the decimal point.
+/// A number for messages, with at most six digits after the decimal point, or with six significant
+/// digits and an exponent if it is very small.
 pub(super) fn show_number(value: f64) -> String {
     if value.is_nan() {
         return "not a number".to_owned();
@@ -175,8 +176,13 @@ pub(super) fn show_number(value: f64) -> String {
         return if value > 0.0 { "inf" } else { "-inf" }.to_owned();
     }
     let rounded = (value * 1e6).round() / 1e6;
-    // Adding 0 turns -0 into 0. A value that would round to 0 is shown with all its digits.
-    if rounded == 0.0 && value != 0.0 { format!("{value:e}") } else { format!("{}", rounded + 0.0) }
+    if rounded == 0.0 && value != 0.0 {
+        // Parsing drops the zeros at the end.
+        let short: f64 = format!("{value:.5e}").parse().unwrap_or(value);
+        return format!("{short:e}");
+    }
+    // Adding 0 turns -0 into 0.
+    format!("{}", rounded + 0.0)
 }
 
 /// A number or vector for messages.

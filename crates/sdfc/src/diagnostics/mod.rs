@@ -2,6 +2,7 @@
 
 mod origins;
 pub(crate) mod refutations;
+mod uncertified;
 pub(crate) mod warnings;
 
 use std::sync::Arc;

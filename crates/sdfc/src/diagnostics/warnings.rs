@@ -7,6 +7,7 @@ use sdfc_graph::{Dim, ShapeId};
 use sdfc_lang::{Declared, Elaborated, Site};
 
 use super::origins::Origins;
+use super::uncertified;
 
 /// Returns the warnings W0601 (operators that need a distance and get a bound), W0602 (shapes
 /// without a Lipschitz constant) and W0606 (useless clauses).
@@ -25,9 +26,7 @@ pub(crate) fn warnings(
         if seen.insert((Code::UNCERTIFIED, site.span)) {
             let message = format!("`{}` is uncertified: {}", site.name, part.reason);
             let warning = Diagnostic::warning(Code::UNCERTIFIED, site.span, message);
-            let help = "a ray may step through this shape, so `auto` falls back to slower interval \
-                        tracing; add `lipschitz` and `bounds` clauses";
-            warnings.push(warning.help(help));
+            warnings.push(warning.help(uncertified::help(elaborated, report, part)));
         }
     }
     for part in &report.inexact_operators {

@@ -127,7 +127,11 @@ impl Parser<'_> {
         {
             let [left, middle, operator, right] =
                 [left.span, middle.span, op_span, right.span].map(|span| self.slice(span));
-            if left.len() + middle.len() + right.len() < 60 {
+            let is_import = |word| left.strip_prefix(word).is_some_and(|at| at.starts_with(" <"));
+            if is_import("include") || is_import("use") {
+                // An import of OpenSCAD: `include <file.scad>`.
+                diagnostic = diagnostic.help("write `import name from \"file.sdf\"`");
+            } else if left.len() + middle.len() + right.len() < 60 {
                 diagnostic =
                     diagnostic.help(format!("write {left} && {middle} {operator} {right}"));
             }

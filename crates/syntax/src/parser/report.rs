@@ -119,6 +119,12 @@ impl Parser<'_> {
         match (previous.kind, self.kind()) {
             (TokenKind::Name, TokenKind::Name) => {
                 let word = self.slice(self.span());
+                if matches!(text, "module" | "function" | "def" | "func") {
+                    return Some(format!(
+                        "declare a function with `fn {word}(x) = ...`, and a shape with `solid \
+                         {word}() = ...`"
+                    ));
+                }
                 Some(format!(
                     "arguments stand in brackets, {text}({word}); `let {word} = ...` names a value"
                 ))
