@@ -3,6 +3,7 @@
 //!
 //! Inputs of several parts are cut at the byte 0xFF, which no UTF-8 text contains. So a text by
 //! itself is an input of one part, and scenes of the repository are a corpus for most targets.
+#![deny(unsafe_code)]
 
 mod boundary;
 mod files;
