@@ -14,7 +14,7 @@ use sdfc_capi::{
 use crate::parts;
 
 /// Options for a mesh or a contour that is made in milliseconds.
-const COARSE: &CStr = c"{\"error_relative\": 0.2, \"max_cells\": 500}";
+const COARSE: &CStr = c"{\"error_relative\": 0.2, \"max_cells\": 50}";
 /// Points, three numbers each.
 const POINTS: [f64; 6] = [0.5, 0.5, 0.5, -1e30, 0.0, f64::NAN];
 
