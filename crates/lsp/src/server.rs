@@ -61,6 +61,7 @@ pub fn serve(
             questions,
             replies: Vec::new(),
             revision: 0,
+            is_shut_down: false,
         };
         let served = server.run();
         // Whoever draws stops, and then finds no more questions.
@@ -139,6 +140,8 @@ struct Server<'c, 'd> {
     replies: Vec<Reply>,
     /// The number of notifications that may have changed a text.
     revision: u64,
+    /// True after the request `shutdown`.
+    is_shut_down: bool,
 }
 
 impl<'c> Server<'c, 'c> {
@@ -159,18 +162,20 @@ impl<'c> Server<'c, 'c> {
             }
             let Some(message) = self.waiting.pop_front() else { continue };
             match message {
-                Message::Request(request) => {
-                    let ends = self.connection.handle_shutdown(&request);
-                    if ends.map_err(|e| e.to_string())? {
-                        return Ok(());
-                    }
-                    self.request(request)?;
-                }
+                Message::Request(request) => self.request(request)?,
                 Message::Notification(it) if it.method == "exit" => return Ok(()),
+                Message::Notification(_) if self.is_shut_down => {}
                 Message::Notification(notification) => self.notification(&notification)?,
                 Message::Response(_) => {}
             }
         }
+    }
+
+    /// Ends the work. The editor sends `exit` next, which may wait in the queue already.
+    fn shut_down(&mut self) {
+        self.is_shut_down = true;
+        self.changed.clear();
+        self.unfinished.clear();
     }
 
     fn request(&mut self, request: Request) -> Result<(), String> {
@@ -182,6 +187,12 @@ impl<'c> Server<'c, 'c> {
         let response = if self.waiting.iter().any(cancels) {
             let code = ErrorCode::RequestCanceled as i32;
             Response::new_err(request.id, code, "cancelled".to_owned())
+        } else if self.is_shut_down {
+            let message = "the server was asked to shut down".to_owned();
+            Response::new_err(request.id, ErrorCode::InvalidRequest as i32, message)
+        } else if request.method == "shutdown" {
+            self.shut_down();
+            Response::new_ok(request.id, Value::Null)
         } else if let Some(ask) = asked(&request.method, &request.params) {
             match ask.and_then(|ask| self.question(&request, ask)) {
                 Ok(()) => return Ok(()),

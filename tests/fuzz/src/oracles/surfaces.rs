@@ -57,7 +57,8 @@ fn differ(a: &[f32], b: &[f32]) -> bool {
 /// A mesh is closed, its vertices lie on the surface, and points are inside of both or of none.
 pub(super) fn mesh(subject: &Subject) -> Outcome {
     let scene = &subject.scene;
-    if scene.is_planar() || !is_drawn(scene) {
+    // The mesh has none of the solids without a limit, but the field has.
+    if scene.is_planar() || !is_drawn(scene) || !scene.left_out(&scene.defaults()).is_empty() {
         return Ok(Verdict::LeftOut);
     }
     let options = MeshOptions::new().error(MeshSize::Relative(ERROR)).max_cells(CELLS);
