@@ -91,6 +91,7 @@ pub(crate) fn service(text: &str) -> Outcome {
     let scene = Analysis::new(NAME, text, &NoFiles);
     let shown: Errors = sdfc_ide::diagnostics(&scene, false)
         .into_iter()
+        .chain(sdfc_ide::late_diagnostics(&scene, &NoFiles))
         .filter(|it| it.severity == Severity::Error)
         .map(|it| (it.code, it.range.start, it.range.end))
         .collect();
