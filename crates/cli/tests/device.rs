@@ -34,6 +34,8 @@ fn main() {
     trials.push(tuned.with_ignored_flag(without_gpu()));
     let sampled = Trial::test("samples a step apart prove nothing", samples_prove_nothing);
     trials.push(sampled.with_ignored_flag(without_gpu()));
+    let steep = Trial::test("too few steps name the steepest shape", too_few_steps_name_a_shape);
+    trials.push(steep.with_ignored_flag(without_gpu()));
     libtest_mimic::run(&Arguments::from_args(), trials).exit();
 }
 
@@ -50,6 +52,19 @@ fn samples_prove_nothing() -> Result<(), Failed> {
         return Err(format!("{:?}, {}", sampled.status, said(&sampled)).into());
     }
     Ok(())
+}
+
+fn too_few_steps_name_a_shape() -> Result<(), Failed> {
+    let scene = "solid steep() lipschitz 8 = 8 * (length(p) - 1)\nsteep()\nmarch(steps: 6)\n";
+    let folder = folder(&[("a.sdf", scene)]);
+    let args = "render a.sdf --size 24x16 -o a.png --march sphere";
+    let said = said(&run_in(folder.path(), args, b"", &[]));
+    let advice = "steps are 8 times shorter because of the Lipschitz constant of `steep`";
+    if said.contains("ran out of steps") && said.contains(advice) {
+        Ok(())
+    } else {
+        Err(said.into())
+    }
 }
 
 /// Numbers of calls, from one to the most that a picture takes.

@@ -6,7 +6,7 @@ use rustc_hash::FxHashSet;
 use crate::error::{MeshError, Phase};
 use crate::field::{Frame, LocalField, Prism, Prober, ROUNDING};
 use crate::grid::Grid;
-use crate::nearness::{Clipped, clip, crosses_once, distance, is_in_box};
+use crate::nearness::{Clipped, clip, crosses_once, distance, is_in_box, line_in_box};
 use crate::refine::{OnProgress, report};
 use crate::surface::{Mesh, MeshCertificate};
 use crate::vector::{Vec3, add, between, length, scale, sub, total, unit};
@@ -272,13 +272,13 @@ impl<'f> Prover<'_, 'f> {
         }
         // Beyond an end, the field has one sign in the whole box.
         let is_crossed = LINES.iter().any(|part| {
-            let start = std::array::from_fn(|axis| {
-                middle[axis] + part[axis] * 0.5 * (bounds[1][axis] - bounds[0][axis])
-            });
-            let [height, u, v] = frame.coordinates(start);
-            let [before, behind] = within(bounds, start, frame.normal);
-            let ends = [height + before - error, height + behind + error];
-            ends[0] < lo && hi < ends[1] && crosses_once(&clipped.triangles, [u, v], ends)
+            let half = sub(bounds[1], middle);
+            let offset = std::array::from_fn(|axis| part[axis] * half[axis]);
+            let [height, u, v] = frame.coordinates(add(middle, offset));
+            line_in_box(offset, frame.normal, half).is_some_and(|[before, behind]| {
+                let ends = [height + before - error, height + behind + error];
+                ends[0] < lo && hi < ends[1] && crosses_once(&clipped.triangles, [u, v], ends)
+            })
         });
         Some(hi >= end || lo <= -end || is_crossed)
     }
@@ -385,20 +385,6 @@ fn reaches(prober: &mut Prober<'_>, middle: Vec3, reach: f64, side: bool) -> boo
     false
 }
 
-/// Returns the distances along a direction at which a line through a point of a box enters and
-/// leaves it.
-fn within(bounds: [Vec3; 2], point: Vec3, direction: Vec3) -> [f64; 2] {
-    let mut range = [f64::NEG_INFINITY, f64::INFINITY];
-    for axis in 0..3 {
-        let ends = bounds.map(|corner| (corner[axis] - point[axis]) / direction[axis]);
-        if direction[axis] != 0.0 {
-            range[0] = range[0].max(ends[0].min(ends[1]));
-            range[1] = range[1].min(ends[0].max(ends[1]));
-        }
-    }
-    range
-}
-
 fn volume([lo, hi]: &[Vec3; 2]) -> f64 {
     (0..3).map(|axis| hi[axis] - lo[axis]).product()
 }
@@ -415,9 +401,6 @@ fn overlaps(corners: [Vec3; 3], [lo, hi]: [Vec3; 2], margin: f64) -> bool {
 
 /// True if a triangle meets a box that is grown by a margin.
 fn meets(corners: [Vec3; 3], bounds: [Vec3; 2], margin: f64) -> bool {
-    if !overlaps(corners, bounds, margin) {
-        return false;
-    }
     let middle = between(bounds[0], bounds[1], 0.5);
     let half = sub(bounds[1], middle).map(|half| (half + margin) * (1.0 + 1e-12));
     is_in_box(corners.map(|corner| sub(corner, middle)), half)

@@ -59,10 +59,16 @@ pub(crate) fn cut(polygon: &[Vec3], beyond: impl Fn(&Vec3) -> f64) -> Vec<Vec3> 
 }
 
 /// True if a triangle meets the box `|x| <= half`: no axis separates them (T. Akenine-Möller, Fast
-/// 3D Triangle-Box Overlap Testing, 2001). In doubt because of rounding they meet. The axes of the
-/// box are left to the caller.
+/// 3D Triangle-Box Overlap Testing, 2001). In doubt because of rounding they meet.
 pub(crate) fn is_in_box(corners: [Vec3; 3], half: Vec3) -> bool {
     let [a, b, c] = corners;
+    let is_beside = |axis: usize| {
+        let [x, y, z] = [a[axis], b[axis], c[axis]];
+        x.min(y).min(z) > half[axis] || x.max(y).max(z) < -half[axis]
+    };
+    if (0..3).any(is_beside) {
+        return false;
+    }
     let edges = [sub(b, a), sub(c, b), sub(a, c)];
     let size =
         corners.into_iter().flatten().chain(half).fold(0.0, |most: f64, x| most.max(x.abs()));
@@ -74,6 +80,24 @@ pub(crate) fn is_in_box(corners: [Vec3; 3], half: Vec3) -> bool {
     };
     let across = |[x, y, z]: Vec3| [[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]];
     !separates(cross(edges[0], edges[1])) && !edges.into_iter().flat_map(across).any(separates)
+}
+
+/// The distances along a direction at which a line through a point enters and leaves the box
+/// `|x| <= half`; `None` if it misses the box.
+pub(crate) fn line_in_box(point: Vec3, direction: Vec3, half: Vec3) -> Option<[f64; 2]> {
+    let mut range = [f64::NEG_INFINITY, f64::INFINITY];
+    for axis in 0..3 {
+        if direction[axis] == 0.0 {
+            if point[axis].abs() > half[axis] {
+                return None;
+            }
+            continue;
+        }
+        let ends = [-1.0, 1.0].map(|side| (side * half[axis] - point[axis]) / direction[axis]);
+        range[0] = range[0].max(ends[0].min(ends[1]));
+        range[1] = range[1].min(ends[0].max(ends[1]));
+    }
+    (range[0] < range[1]).then_some(range)
 }
 
 /// True if a line along the first axis, between two heights, crosses the triangles an odd number
@@ -155,15 +179,7 @@ mod tests {
                 clip(corners, half.map(|x: f64| by * x), &mut found);
                 found.heights.is_some()
             };
-            let ends = |axis: usize| {
-                let [a, b, c] = corners.map(|corner: Vec3| corner[axis]);
-                [a.min(b).min(c), a.max(b).max(c)]
-            };
-            let is_beside = |axis: usize| {
-                let [least, most] = ends(axis);
-                least > half[axis] || most < -half[axis]
-            };
-            let found = is_in_box(corners, half) && !(0..3).any(is_beside);
+            let found = is_in_box(corners, half);
             prop_assert!(found || !is_clipped(1.0 - 1e-9));
             prop_assert!(!found || is_clipped(1.0 + 1e-9));
         }

@@ -1,11 +1,11 @@
 //! Proves that mesh and surface are near each other in a box where two faces meet in an edge.
 
 use crate::field::{Frame, Prism, Prober};
-use crate::nearness::{crosses_once, cut, is_in_box, polygon_in_box};
+use crate::nearness::{crosses_once, cut, is_in_box, line_in_box, polygon_in_box};
 use crate::vector::{Vec3, add, between, cross, dot, length, scale, sub, unit};
 
 /// Faces whose normals enclose an angle with a smaller sine have no edge.
-const LEAST_SINE: f64 = 0.1;
+const LEAST_SINE: f64 = 0.3;
 /// The least cosine of half the angle between the normals. Sharper edges need small boxes.
 const LEAST_COSINE: f64 = 0.2;
 /// A part of the box, for the rounding of heights.
@@ -60,31 +60,36 @@ pub(crate) fn is_wedge(
         && wedge.is_above(prober, middle, grown, lo + step)
 }
 
+/// A triangle: its unit normal, its area and its center.
+struct Face {
+    normal: Vec3,
+    area: f64,
+    center: Vec3,
+}
+
+impl Face {
+    fn of([a, b, c]: [Vec3; 3]) -> Option<Self> {
+        let twice = cross(sub(b, a), sub(c, a));
+        let center = scale(add(add(a, b), c), 1.0 / 3.0);
+        Some(Self { normal: unit(twice)?, area: 0.5 * length(twice), center })
+    }
+}
+
 impl Wedge {
-    /// The wedge of the mesh in a box: the planes of its largest triangle and of the largest one
-    /// that is not nearly parallel to it.
+    /// The wedge of the mesh in a box: the planes of its largest triangle and of the largest one at
+    /// an angle to it.
     fn of(triangles: &[[Vec3; 3]], half: Vec3) -> Option<Self> {
         let within = triangles.iter().filter(|corners| is_in_box(**corners, half));
-        let areas = within.map(|corners| (area(*corners), *corners));
-        let largest =
-            |a: &(Vec3, [Vec3; 3]), b: &(Vec3, [Vec3; 3])| length(a.0).total_cmp(&length(b.0));
-        let areas: Vec<_> = areas.collect();
-        let (first, on_first) = areas.iter().copied().max_by(largest)?;
-        let n = unit(first)?;
-        let is_other =
-            |(other, _): &&(Vec3, [Vec3; 3])| length(cross(n, *other)) > 0.3 * length(*other);
-        let (second, on_second) = areas.iter().filter(is_other).copied().max_by(largest)?;
-        let m = unit(second)?;
-        if length(cross(n, m)) < LEAST_SINE {
-            return None;
-        }
-        let center = |[a, b, c]: [Vec3; 3]| scale(add(add(a, b), c), 1.0 / 3.0);
-        let [center_1, center_2] = [center(on_first), center(on_second)];
+        let faces: Vec<Face> = within.copied().filter_map(Face::of).collect();
+        let largest = |a: &&Face, b: &&Face| a.area.total_cmp(&b.area);
+        let first = faces.iter().max_by(largest)?;
+        let is_other = |face: &&Face| length(cross(first.normal, face.normal)) > LEAST_SINE;
+        let second = faces.iter().filter(is_other).max_by(largest)?;
         // The convex side is below both planes.
-        let is_convex = dot(sub(center_2, center_1), n) < 0.0;
+        let is_convex = dot(sub(second.center, first.center), first.normal) < 0.0;
         let sign = if is_convex { 1.0 } else { -1.0 };
-        let normals = [scale(n, sign), scale(m, sign)];
-        let offsets = [dot(normals[0], center_1), dot(normals[1], center_2)];
+        let normals = [first, second].map(|face| scale(face.normal, sign));
+        let offsets = [dot(normals[0], first.center), dot(normals[1], second.center)];
         let up = unit(add(normals[0], normals[1]))?;
         let cosine = dot(up, normals[0]).min(dot(up, normals[1]));
         (cosine > LEAST_COSINE).then_some(Self { normals, offsets, up, cosine, is_convex })
@@ -135,7 +140,7 @@ impl Wedge {
             let start = [0, 1, 2].map(|axis| part[axis] * half[axis]);
             let [a, b] = self.over(start);
             let start = sub(start, scale(apart, TO_EDGE * (a - b) / dot(apart, apart)));
-            let Some([from, to]) = within(grown, start, self.up) else { return false };
+            let Some([from, to]) = line_in_box(start, self.up, grown) else { return false };
             let at = |t: f64| self.over(add(start, scale(self.up, t)));
             if at(from).iter().any(|height| *height >= lo) || at(to).iter().any(|h| *h <= hi) {
                 return false;
@@ -180,29 +185,6 @@ impl Wedge {
             from >= to || prober.side_over(&frame.part(from.max(-to), to)) == Some(!self.is_convex)
         })
     }
-}
-
-/// The normal of a triangle, as long as twice its area.
-fn area([a, b, c]: [Vec3; 3]) -> Vec3 {
-    cross(sub(b, a), sub(c, a))
-}
-
-/// The distances along a direction at which a line through a point enters and leaves a box around
-/// the origin; `None` if it misses the box.
-fn within(half: Vec3, point: Vec3, direction: Vec3) -> Option<[f64; 2]> {
-    let mut range = [f64::NEG_INFINITY, f64::INFINITY];
-    for axis in 0..3 {
-        if direction[axis] == 0.0 {
-            if point[axis].abs() > half[axis] {
-                return None;
-            }
-            continue;
-        }
-        let ends = [-1.0, 1.0].map(|side| (side * half[axis] - point[axis]) / direction[axis]);
-        range[0] = range[0].max(ends[0].min(ends[1]));
-        range[1] = range[1].min(ends[0].max(ends[1]));
-    }
-    (range[0] < range[1]).then_some(range)
 }
 
 #[cfg(test)]

@@ -58,11 +58,11 @@ impl Scene {
         };
         let divided = self.report.shapes.iter().filter(|shape| shape.divided);
         let steepest = divided.max_by(|a, b| constant(a).total_cmp(&constant(b)))?;
-        let factor = constant(&steepest);
+        let factor = (1e3 * constant(&steepest)).round() / 1e3;
         let name = &self.graph().graph.shape(steepest.shape).definition;
         (factor >= 2.0).then(|| {
             format!(
-                "steps are {factor:.3} times shorter because of the Lipschitz constant of \
+                "steps are {factor} times shorter because of the Lipschitz constant of \
                  `{name}`: make it less steep, or state a smaller `lipschitz` if one holds"
             )
         })

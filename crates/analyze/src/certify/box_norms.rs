@@ -94,12 +94,12 @@ impl Known<'_> {
 
     /// The largest absolute value of a lane.
     fn largest(&self, index: usize) -> f64 {
-        self.values(index).map(magnitude).fold(0.0, f64::max)
+        self.values(index).map(Interval::magnitude).fold(0.0, f64::max)
     }
 
     /// The largest length of the vector.
     fn longest(&self, index: usize) -> f64 {
-        self.values(index).map(magnitude).map(|x| x * x).sum::<f64>().sqrt()
+        self.values(index).map(Interval::magnitude).map(|x| x * x).sum::<f64>().sqrt()
     }
 
     /// The range of all lanes.
@@ -180,7 +180,7 @@ impl Known<'_> {
     fn by_intervals(&self, index: usize) -> f64 {
         let rows = self.lanes[index].map(|lane| lane.partials);
         let rows = &rows[..self.widths[index]];
-        if rows.as_flattened().iter().any(|x| !magnitude(*x).is_finite()) {
+        if rows.as_flattened().iter().any(|x| !x.magnitude().is_finite()) {
             return f64::INFINITY;
         }
         if let [row] = rows {
@@ -192,17 +192,13 @@ impl Known<'_> {
         };
         let middles = norm(|x| 0.5 * (x.lo() + x.hi()));
         let radii = norm(|x| 0.5 * (x.hi() - x.lo()));
-        norm(magnitude).min((middles + radii) * (1.0 + 1e-12))
+        norm(Interval::magnitude).min((middles + radii) * (1.0 + 1e-12))
     }
 }
 
 /// The largest length of a vector in a box.
 fn length(partials: [Interval; 3]) -> f64 {
-    partials.map(magnitude).map(|x| x * x).iter().sum::<f64>().sqrt() * (1.0 + 1e-12)
-}
-
-fn magnitude(x: Interval) -> f64 {
-    x.lo().abs().max(x.hi().abs())
+    partials.map(Interval::magnitude).map(|x| x * x).iter().sum::<f64>().sqrt() * (1.0 + 1e-12)
 }
 
 /// The product of two bounds. A slope of 0 stays 0 where the other factor is not limited.

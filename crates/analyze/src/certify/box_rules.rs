@@ -153,27 +153,12 @@ impl Rules {
                 terms.push((index, sign));
                 continue;
             }
-            match graph.node(node) {
-                Node::Binary(op @ (Binary::Add | Binary::Sub), a, b) => {
-                    let other = if op == Binary::Add { sign } else { -sign };
-                    pending.extend([(self.index(a)?, sign), (self.index(b)?, other)]);
-                }
-                Node::Const(_)
-                | Node::Point(..)
-                | Node::Frame(..)
-                | Node::Unary(..)
-                | Node::Binary(..)
-                | Node::Ternary(..)
-                | Node::Splat(..)
-                | Node::Compose(..)
-                | Node::Swizzle(..)
-                | Node::Transform(..)
-                | Node::Variable(..)
-                | Node::Loop(..)
-                | Node::Element(..)
-                | Node::Sample(..)
-                | Node::MaterialAt(..) => terms.push((index, sign)),
-            }
+            let Node::Binary(op @ (Binary::Add | Binary::Sub), a, b) = graph.node(node) else {
+                terms.push((index, sign));
+                continue;
+            };
+            let other = if op == Binary::Add { sign } else { -sign };
+            pending.extend([(self.index(a)?, sign), (self.index(b)?, other)]);
         }
         Some(Rule::Sum(terms))
     }

@@ -77,25 +77,11 @@ pub(super) fn counterpart(graph: &Graph, lane: Lane, others: &[Lane]) -> Option<
     let Node::Binary(op @ (Binary::Min | Binary::Max), a, b) = graph.node(lane.0) else {
         return None;
     };
-    let is_counterpart = |&(node, at): &Lane| match graph.node(node) {
-        Node::Binary(other @ (Binary::Min | Binary::Max), x, y) => {
-            other != op && at == lane.1 && ([x, y] == [a, b] || [x, y] == [b, a])
-        }
-        Node::Const(_)
-        | Node::Point(..)
-        | Node::Frame(..)
-        | Node::Unary(..)
-        | Node::Binary(..)
-        | Node::Ternary(..)
-        | Node::Splat(..)
-        | Node::Compose(..)
-        | Node::Swizzle(..)
-        | Node::Transform(..)
-        | Node::Variable(..)
-        | Node::Loop(..)
-        | Node::Element(..)
-        | Node::Sample(..)
-        | Node::MaterialAt(..) => false,
+    let is_counterpart = |&(node, at): &Lane| {
+        let Node::Binary(other @ (Binary::Min | Binary::Max), x, y) = graph.node(node) else {
+            return false;
+        };
+        other != op && at == lane.1 && ([x, y] == [a, b] || [x, y] == [b, a])
     };
     others.iter().position(is_counterpart)
 }

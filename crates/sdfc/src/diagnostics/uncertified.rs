@@ -3,7 +3,7 @@
 use sdfc_analyze::{
     Lipschitz, Reason, Report, SuggestedClauses, Uncertified, rounded_up, suggested_clauses,
 };
-use sdfc_graph::{Arg, ShapeId};
+use sdfc_graph::{Arg, Dim, ShapeId};
 use sdfc_lang::Elaborated;
 
 const SLOWER: &str = "leave it: `auto` then draws the scene by interval tracing, which is slower";
@@ -42,13 +42,21 @@ pub(super) fn help(elaborated: &Elaborated, report: &Report, part: &Uncertified)
                  which its value changes when `q` moves by 1"
                     .to_owned()
             } else {
+                let (name, limit) = (&shape.definition, limit(shape.dim));
                 format!(
-                    "limit the shape first, for example `(a & box(4)).{}(...)` for \
-                     `a.{}(...)`",
-                    shape.definition, shape.definition
+                    "limit the shape first, for example `(a & {limit}).{name}(...)` for \
+                     `a.{name}(...)`"
                 )
             }
         }
+    }
+}
+
+/// A shape that limits another one.
+fn limit(dim: Dim) -> &'static str {
+    match dim {
+        Dim::Two => "rect(4)",
+        Dim::Three => "box(4)",
     }
 }
 

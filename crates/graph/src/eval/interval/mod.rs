@@ -63,7 +63,7 @@ impl Interval {
     }
 
     /// The greatest absolute value.
-    fn magnitude(self) -> f64 {
+    pub fn magnitude(self) -> f64 {
         self.lo.abs().max(self.hi.abs())
     }
 

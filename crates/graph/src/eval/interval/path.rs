@@ -123,7 +123,7 @@ impl Tracer<Interval> for &mut BranchPath {
         if op == Op::Atan2 && a.contains(0.0) && b.hi < 0.0 {
             return self.on_one_side(a, b, result);
         }
-        // What is selected depends on a comparison, which is decided.
+        // The comparison of a selection is decided, or counts as a jump itself.
         if op == Op::Select {
             return result;
         }

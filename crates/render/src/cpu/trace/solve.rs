@@ -52,7 +52,7 @@ pub(super) struct Search<T> {
     found: Vec<(usize, Option<T>, u32)>,
 }
 
-/// What is known of a ray.
+/// The result of the search along a ray so far.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Status {
     Open,
