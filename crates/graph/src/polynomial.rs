@@ -1,5 +1,6 @@
-//! Polynomials in sines, cosines and other per-frame atoms, reduced by sin² = 1 - cos². They show
-//! that a matrix built from rotations by params is a rotation for every value of the params.
+//! Polynomials in sines, cosines, lanes of normalized vectors and other per-frame atoms, reduced by
+//! sin² = 1 - cos² and z² = 1 - x² - y². They show that a matrix built from rotations by params is
+//! a rotation for every value of the params.
 
 use std::collections::BTreeMap;
 
@@ -17,12 +18,16 @@ const MAX_DEPTH: u32 = 32;
 /// count each time they are met.
 const MAX_VISITS: u32 = 1024;
 
-/// An indeterminate of a polynomial.
+/// An indeterminate of a polynomial: a lane of a node, or a function of it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Atom {
-    Cos(NodeId),
-    Sin(NodeId),
-    Other(NodeId),
+    Cos(NodeId, u8),
+    Sin(NodeId, u8),
+    /// A lane of a normalized vector.
+    Unit(NodeId, u8),
+    /// The last lane of a normalized vector. Its number is the count of the others.
+    LastUnit(NodeId, u8),
+    Other(NodeId, u8),
 }
 
 /// A product of atoms with their powers.
@@ -88,37 +93,49 @@ impl Polynomial {
 
     /// The polynomial that a scalar node computes; `None` if it grows too large.
     pub fn of(graph: &Graph, node: NodeId) -> Option<Self> {
-        Self::of_within(graph, node, MAX_DEPTH, &mut { MAX_VISITS })
+        Self::of_lane(graph, (node, 0), MAX_DEPTH, &mut { MAX_VISITS })
     }
 
-    fn of_within(graph: &Graph, node: NodeId, depth: u32, visits: &mut u32) -> Option<Self> {
+    fn of_lane(
+        graph: &Graph,
+        (node, lane): (NodeId, u8),
+        depth: u32,
+        visits: &mut u32,
+    ) -> Option<Self> {
         *visits = visits.checked_sub(1)?;
         if depth == 0 {
-            return Some(Self::atom(Atom::Other(node)));
+            return Some(Self::atom(Atom::Other(node, lane)));
         }
-        let mut of = |id| Self::of_within(graph, id, depth - 1, visits);
+        let mut of = |id, lane| Self::of_lane(graph, (id, lane), depth - 1, visits);
         match graph.node(node) {
-            Node::Const(value) => Some(Self::number(value.scalar()?)),
-            Node::Unary(Unary::Neg, a) => Some(of(a)?.times_number(-1.0)),
-            Node::Unary(Unary::Cos, a) => Some(Self::atom(Atom::Cos(a))),
-            Node::Unary(Unary::Sin, a) => Some(Self::atom(Atom::Sin(a))),
-            Node::Binary(Binary::Add, a, b) => Some(of(a)?.plus(&of(b)?)),
-            Node::Binary(Binary::Sub, a, b) => Some(of(a)?.plus(&of(b)?.times_number(-1.0))),
-            Node::Binary(Binary::Mul, a, b) => of(a)?.times(&of(b)?),
+            Node::Const(value) => Some(Self::number(value.lanes()[usize::from(lane)])),
+            Node::Unary(Unary::Neg, a) => Some(of(a, lane)?.times_number(-1.0)),
+            Node::Unary(Unary::Cos, a) => Some(Self::atom(Atom::Cos(a, lane))),
+            Node::Unary(Unary::Sin, a) => Some(Self::atom(Atom::Sin(a, lane))),
+            Node::Unary(Unary::Normalize, _) => {
+                let is_last = usize::from(lane) + 1 == graph.ty(node).width();
+                let atom = if is_last { Atom::LastUnit } else { Atom::Unit };
+                Some(Self::atom(atom(node, lane)))
+            }
+            Node::Binary(Binary::Add, a, b) => Some(of(a, lane)?.plus(&of(b, lane)?)),
+            Node::Binary(Binary::Sub, a, b) => {
+                Some(of(a, lane)?.plus(&of(b, lane)?.times_number(-1.0)))
+            }
+            Node::Binary(Binary::Mul, a, b) => of(a, lane)?.times(&of(b, lane)?),
+            Node::Splat(_, a) => of(a, 0),
+            Node::Compose(_, parts) => of(parts[usize::from(lane)], 0),
+            Node::Swizzle(_, a, lanes) => of(a, lanes[usize::from(lane)]),
             Node::Point(..)
             | Node::Frame(..)
             | Node::Unary(..)
             | Node::Binary(..)
             | Node::Ternary(..)
-            | Node::Splat(..)
-            | Node::Compose(..)
-            | Node::Swizzle(..)
             | Node::Transform(..)
             | Node::Variable(..)
             | Node::Loop(..)
             | Node::Element(..)
             | Node::Sample(..)
-            | Node::MaterialAt(..) => Some(Self::atom(Atom::Other(node))),
+            | Node::MaterialAt(..) => Some(Self::atom(Atom::Other(node, lane))),
         }
     }
 
@@ -192,27 +209,34 @@ pub fn similarity_scale_squared(rows: &[[Polynomial; 3]]) -> Option<Polynomial> 
     Some(square)
 }
 
-/// The monomial with every sin² replaced by 1 - cos².
+/// The monomial with every sin² replaced by 1 - cos², and the square of the last lane of every
+/// normalized vector by 1 minus the squares of the others.
 fn reduced(monomial: Monomial, coefficient: Coefficient) -> Option<Polynomial> {
-    let square = monomial.iter().find_map(|(atom, power)| match atom {
-        Atom::Sin(angle) if *power >= 2 => Some(*angle),
-        Atom::Sin(_) | Atom::Cos(_) | Atom::Other(_) => None,
-    });
-    let Some(angle) = square else {
+    let square = monomial.iter().find(|(atom, power)| **power >= 2 && !others(**atom).is_empty());
+    let Some((&atom, &power)) = square else {
         return Some(Polynomial { terms: BTreeMap::from([(monomial, coefficient)]) });
     };
     let mut rest = monomial;
-    let sin = Atom::Sin(angle);
-    let power = rest.remove(&sin).unwrap_or(0);
+    rest.remove(&atom);
     if power > 2 {
-        rest.insert(sin, power - 2);
+        rest.insert(atom, power - 2);
     }
-    let mut with_cos = rest.clone();
-    *with_cos.entry(Atom::Cos(angle)).or_insert(0) += 2;
-    Some(
-        reduced(rest, coefficient)?
-            .plus(&reduced(with_cos, coefficient.times(Coefficient::new(-1.0)))?),
-    )
+    let mut sum = reduced(rest.clone(), coefficient)?;
+    for other in others(atom) {
+        let mut with_other = rest.clone();
+        *with_other.entry(other).or_insert(0) += 2;
+        sum = sum.plus(&reduced(with_other, coefficient.times(Coefficient::new(-1.0)))?);
+    }
+    Some(sum)
+}
+
+/// The atoms whose squares add up to 1 with that of `atom`; none if its square is not replaced.
+fn others(atom: Atom) -> Vec<Atom> {
+    match atom {
+        Atom::Sin(angle, lane) => vec![Atom::Cos(angle, lane)],
+        Atom::LastUnit(vector, last) => (0..last).map(|lane| Atom::Unit(vector, lane)).collect(),
+        Atom::Cos(..) | Atom::Unit(..) | Atom::Other(..) => Vec::new(),
+    }
 }
 
 #[cfg(test)]
@@ -243,6 +267,22 @@ mod tests {
         let rows = [[one.clone(), shear], [Polynomial::zero(), one]]
             .map(|[x, y]| [x, y, Polynomial::zero()]);
         assert!(similarity_scale_squared(&rows).is_none());
+    }
+
+    #[test]
+    fn a_normalized_vector_has_length_one() {
+        let mut graph = Graph::new();
+        let k = graph.frame_input(FrameInput::Param(0), Type::Scalar);
+        let two = graph.number(2.0);
+        let vector = graph.compose(&[k, two, k]);
+        let unit = graph.unary(Unary::Normalize, vector);
+        let lanes = [0, 1, 2].map(|lane| graph.component(unit, lane));
+        let [x, y, z] = lanes.map(|lane| Polynomial::of(&graph, lane).unwrap());
+        let square = |lane: &Polynomial| lane.times(lane).unwrap();
+        let sum = square(&x).plus(&square(&y)).plus(&square(&z));
+        assert_eq!(sum.constant(), Some(1.0));
+        assert_eq!(square(&sum).constant(), Some(1.0));
+        assert_eq!(square(&x).plus(&square(&y)).constant(), None);
     }
 
     #[test]

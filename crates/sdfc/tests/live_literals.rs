@@ -110,3 +110,17 @@ fn beyond_the_limit_the_literals_around_the_focus_are_live() {
     let middle = text.find("0.00300 ").unwrap() as u32;
     assert_eq!(lines(Some(middle)), [46, 557]);
 }
+
+/// The field is not divided by a constant: each axis and each angle make a rotation.
+#[test]
+fn a_rotation_about_a_live_axis_keeps_distances() {
+    let rotated = |axis: &str| format!("sphere().rotate_about({axis}, 30deg).translate(x: 2)\n");
+    let plain = Compiler::new().compile("a.sdf", &rotated("[1, 2, 3]")).unwrap();
+    let by_param = format!("param k = 2 in 1..3\n{}", rotated("[1, k, 3]"));
+    let of = |scene: &Scene| distances(scene, &FrameValues::defaults(scene.params()));
+    for turned in [rotated("[1, 2, 3]"), by_param] {
+        for (a, b) in of(&plain).into_iter().zip(of(&live(&turned))) {
+            assert!((a - b).abs() < 1e-9, "{turned}: {a} and {b}");
+        }
+    }
+}
