@@ -12,6 +12,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use sdfc_test_support::Resources;
 use sdfc_viewer::session::Session;
 use sdfc_viewer::views::mode::ViewMode;
 
@@ -22,11 +23,6 @@ const SIZE: [u32; 2] = [64, 48];
 const DEFAULT_EDITS: usize = 240;
 /// Edits between two measurements. Every second batch is faster than it can be compiled.
 const BATCH: usize = 40;
-/// Allowed growth of memory from the first half to the end, in MiB: allocators keep freed memory.
-const MEMORY_SLACK: u64 = 48;
-/// The number of threads and files that may be open for a moment.
-const TRANSIENT: u64 = 8;
-
 const BROKEN: [&str; 8] = [
     "sphere(",
     "spere(1)",
@@ -59,7 +55,7 @@ fn many_edits_leak_no_memory_threads_or_files() {
         let text = format!("sphere(0.{})\n", batch % 8 + 1);
         std::fs::write(&soak.path, &text).unwrap();
         soak.until(|session| is_shown(session, &text));
-        samples.push(Resources::now());
+        samples.push(Resources::of("self"));
         if batch % 25 == 0 {
             println!("{} edits, {:?}", (batch + 1) * BATCH, samples[batch]);
         }
@@ -74,32 +70,7 @@ fn many_edits_leak_no_memory_threads_or_files() {
         soak.session.picture_count,
         samples[0],
     );
-    let most =
-        |of: fn(&Resources) -> u64| samples[..=samples.len() / 2].iter().map(of).max().unwrap();
-    assert!(end.threads <= most(|resources| resources.threads) + TRANSIENT, "threads: {samples:?}");
-    assert!(end.files <= most(|resources| resources.files) + TRANSIENT, "open files: {samples:?}");
-    assert!(end.memory <= most(|resources| resources.memory) + MEMORY_SLACK, "memory: {samples:?}");
-}
-
-/// Resources of the process; all 0 if the system does not say.
-#[derive(Clone, Copy, Debug, Default)]
-struct Resources {
-    /// Resident memory in MiB.
-    memory: u64,
-    threads: u64,
-    files: u64,
-}
-
-impl Resources {
-    fn now() -> Self {
-        let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
-        let of = |name: &str| -> u64 {
-            let line = status.lines().find_map(|line| line.strip_prefix(name));
-            line.and_then(|line| line.split_whitespace().next()?.parse().ok()).unwrap_or(0)
-        };
-        let files = std::fs::read_dir("/proc/self/fd").map_or(0, |files| files.count() as u64);
-        Self { memory: of("VmRSS:") / 1024, threads: of("Threads:"), files }
-    }
+    Resources::have_not_grown(&samples).unwrap();
 }
 
 /// Returns true if the source is the one that is drawn, completely.

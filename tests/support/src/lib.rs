@@ -1,9 +1,13 @@
-//! Paths of the repository and the source text of the example scenes.
+//! Paths of the repository, the source text of the example scenes, and the resources of a process.
 //!
 //! This crate has no dependencies, so that the tests of every crate can use it.
 
+mod resources;
+
 use std::io;
 use std::path::{Path, PathBuf};
+
+pub use resources::Resources;
 
 /// Returns the root folder of the repository.
 pub fn repository() -> PathBuf {
