@@ -81,7 +81,7 @@ impl Generator<'_> {
         let mut named = false;
         // Names before any number of positional arguments are an error.
         let may_name = !callable.positional && !callable.parameters.iter().any(|it| it.variadic);
-        for parameter in &callable.parameters {
+        for (at, parameter) in callable.parameters.iter().enumerate() {
             let rival =
                 RIVAL_PARAMETERS.iter().find(|pair| pair.contains(&parameter.name.as_str()));
             let is_taken = rival.is_some_and(|pair| {
@@ -98,6 +98,7 @@ impl Generator<'_> {
             }
             let value = self.argument(parameter, want.shapes(share));
             named |= may_name && (rival.is_some() || self.chance(25));
+            named |= is_component(&callable.parameters[..=at]);
             let label = if named { format!("{}: ", parameter.name) } else { String::new() };
             elements.push(Element { label, optional: parameter.optional, value });
         }
@@ -202,4 +203,10 @@ fn is_shape_like(ty: &Ty) -> bool {
 
 fn takes_shapes(callable: &Callable) -> bool {
     callable.parameters.iter().any(|parameter| is_shape_like(&parameter.ty))
+}
+
+/// True if the last parameter is `x` behind a vector, as in `translate(by, x, y, z)`: it needs its
+/// name.
+fn is_component(parameters: &[Parameter]) -> bool {
+    matches!(parameters, [.., vector, x] if matches!(vector.ty, Ty::Vec(_)) && x.name == "x")
 }
