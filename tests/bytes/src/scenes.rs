@@ -68,11 +68,13 @@ pub fn imports(bytes: &[u8]) {
 
 /// Compiles and writes a scene with two letters of a font.
 pub fn font(bytes: &[u8]) {
-    let files = Files(BTreeMap::from([("a.ttf".to_owned(), bytes.to_vec())]));
-    let text = "import font letters from \"a.ttf\"\ntext(\"Aq\", font: letters).extrude(0.1)\n";
+    letters(bytes).iter().for_each(|scene| write(scene, bytes.len()));
+}
+
+fn letters(font: &[u8]) -> Option<Scene> {
+    let files = Files(BTreeMap::from([("a.ttf".to_owned(), font.to_vec())]));
+    let text = "text(\"Aq\", font: \"a.ttf\").extrude(0.1)\n";
     compile(&Compiler::new().resolver(&files), text)
-        .iter()
-        .for_each(|scene| write(scene, bytes.len()));
 }
 
 /// Compiles a text, and checks that its diagnostics can be shown.
@@ -115,4 +117,16 @@ fn write(scene: &Scene, length: usize) {
     scene.reflect(&options, &written);
     let mut field = scene.field(&scene.defaults()).unwrap_or_else(|error| panic!("{error}"));
     field.distance([0.3, 0.2, 0.1]);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A target that refuses its seed tests little.
+    #[test]
+    fn the_seed_of_the_fonts_is_a_font() {
+        assert!(letters(include_bytes!("../seeds/letters.ttf")).is_some());
+        assert!(letters(b"no font").is_none());
+    }
 }
