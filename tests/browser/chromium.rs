@@ -74,7 +74,6 @@ pub struct Size {
     /// The nodes of its documents.
     pub nodes: u64,
     /// The bytes of its objects, without those of workers.
-    #[expect(dead_code, reason = "it is printed")]
     pub heap: u64,
     pub workers: usize,
 }
@@ -162,16 +161,27 @@ impl Chromium {
     }
 
     /// Opens a page instead of the previous one, in a window of the given size.
-    pub fn open(&mut self, url: &str, [width, height]: [u32; 2]) -> Result<(), Failed> {
-        let metrics =
-            json!({ "width": width, "height": height, "deviceScaleFactor": 1, "mobile": false });
-        self.call("Emulation.setDeviceMetricsOverride", metrics)?;
+    pub fn open(&mut self, url: &str, size: [u32; 2]) -> Result<(), Failed> {
+        self.resize(size)?;
         self.errors.clear();
         let opened = self.call("Page.navigate", json!({ "url": url }))?;
         match opened["errorText"].as_str() {
             Some(why) => Err(format!("{url}: {why}").into()),
             None => Ok(()),
         }
+    }
+
+    /// Gives the window another size.
+    pub fn resize(&mut self, [width, height]: [u32; 2]) -> Result<(), Failed> {
+        let metrics =
+            json!({ "width": width, "height": height, "deviceScaleFactor": 1, "mobile": false });
+        self.call("Emulation.setDeviceMetricsOverride", metrics)?;
+        Ok(())
+    }
+
+    /// The number of the browser's process.
+    pub fn process(&self) -> u32 {
+        self.process.id()
     }
 
     /// Evaluates a JavaScript expression and waits for its value if it is a promise.

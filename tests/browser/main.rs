@@ -11,6 +11,7 @@ mod pages;
 mod playground;
 mod server;
 mod site;
+mod soak;
 mod survival;
 mod table;
 mod three;
@@ -84,6 +85,12 @@ fn main() {
     if std::env::var_os(measure::MEASURE).is_some() {
         add("the_playground_times".to_owned(), Box::new(measure::times));
         add("the_playground_screenshots".to_owned(), Box::new(measure::screenshots));
+    }
+    if std::env::var_os(soak::MINUTES).is_some() {
+        for backend in ["webgpu", "webgl2"] {
+            let name = format!("the_playground_stays_small_with_{backend}");
+            add(name, Box::new(move |session| soak::stays_small(session, backend)));
+        }
     }
     let conclusion = libtest_mimic::run(&Arguments::from_args(), trials);
     // A static is not dropped, so the browsers would keep running.

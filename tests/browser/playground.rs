@@ -333,12 +333,8 @@ pub fn opens_examples(session: &mut Session, backend: &str) -> Result<(), Failed
     let mut sizes = Vec::new();
     let last = all.saturating_sub(1);
     for place in (0..all).rev().take(most).chain([last]) {
-        page.after("drawn", |chromium| {
-            chromium.click("#open-gallery", [0.5, 0.5])?;
-            chromium.apply(CHOOSE, &place.into())?;
-            Ok(())
-        })
-        .map_err(|e| format!("example {place}: {}", e.message().unwrap_or_default()))?;
+        open_example(&mut page, place)
+            .map_err(|e| format!("example {place}: {}", e.message().unwrap_or_default()))?;
         page.expect_no_complaint()?;
         if place == last {
             sizes.push(page.chromium.size()?);
@@ -352,6 +348,15 @@ pub fn opens_examples(session: &mut Session, backend: &str) -> Result<(), Failed
         return Err(format!("the page grew from {first:?} to {last:?}").into());
     }
     Ok(())
+}
+
+/// Opens an example of the gallery by its place there.
+pub fn open_example(page: &mut Page, place: usize) -> Result<(), Failed> {
+    page.after("drawn", |chromium| {
+        chromium.click("#open-gallery", [0.5, 0.5])?;
+        chromium.apply(CHOOSE, &place.into())?;
+        Ok(())
+    })
 }
 
 /// Nodes that the editor keeps for its cursor and its lines.
