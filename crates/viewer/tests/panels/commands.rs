@@ -183,4 +183,5 @@ fn the_description_of_a_library_entry_has_its_picture() {
     fixture.harness.hover_at(position(&fixture, 0, 2));
     fixture.until(|harness| harness.query_by_label("a picture of the entry").is_some());
     assert!(fixture.has("solid sphere("));
+    assert!(fixture.has("• r: "));
 }

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use eframe::egui::{self, Response, Ui};
 use sdfc_ide::{ExampleScene, Hover, ShapeFacts, hover};
 
+use super::markdown;
 use crate::app::picture_textures::PictureTextures;
 use crate::compile::diagnostics::ShownDiagnostic;
 use crate::session::Session;
@@ -49,14 +50,12 @@ impl HoverText {
             return;
         }
         let Some(shown) = self.hover(session, at) else { return };
-        let lines = shown.markdown.lines().filter(|line| !line.starts_with("```"));
-        let text = lines.collect::<Vec<_>>().join("\n");
         response.clone().on_hover_ui_at_pointer(|ui| {
             ui.set_max_width(MAX_WIDTH);
             if let Some(example) = &shown.example {
                 self.picture(ui, session, example);
             }
-            ui.label(text.trim());
+            markdown::show(ui, &shown.markdown);
         });
     }
 

@@ -7,6 +7,7 @@ mod find_bar;
 mod highlighting;
 mod hover_text;
 mod jumps;
+mod markdown;
 mod menu;
 mod number_drag;
 mod numbers;
