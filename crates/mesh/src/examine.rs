@@ -125,13 +125,13 @@ fn is_chord_near(placer: &mut Placer<'_, '_>, cell: Cell, sign: impl Fn(Corner) 
 }
 
 /// True if the triangles that the cell would have are near the surface, as far as samples tell.
-fn is_near(placer: &mut Placer<'_, '_>, cell: Cell, loops: &[Vec<LoopStep>]) -> bool {
+pub(crate) fn is_near(placer: &mut Placer<'_, '_>, cell: Cell, loops: &[Vec<LoopStep>]) -> bool {
     let mut crossings: Vec<(Edge, SurfacePoint)> = Vec::new();
     let mut found = Vec::new();
     for steps in loops {
         for step in steps {
             let ends = step.edge.ends().map(|end| placer.grid.position(end));
-            crossings.push((step.edge, placer.crossing(ends, cell.size)));
+            crossings.push((step.edge, placer.crossing(ends, step.edge.size)));
         }
         let at = |edge: Edge| crossings.iter().find(|(known, _)| *known == edge).map(|it| it.1);
         let mut vertices = Vec::new();

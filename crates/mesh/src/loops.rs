@@ -48,12 +48,30 @@ pub(crate) fn loops(
     if loops.len() > 1 && cell.size > 1 { Err(Tangled) } else { Ok(loops) }
 }
 
-/// True if the surface crosses the boundary of a leaf in a way that only a leaf of the smallest
-/// size may have.
-pub(crate) fn is_tangled(tree: &Tree, cell: Cell, is_inside: impl Fn(Corner) -> bool) -> bool {
-    let is_plain = match tree.is_flat {
-        true => tree.chords(cell.base(), is_inside).is_ok_and(|found| found.len() < 2),
-        false => loops(tree, cell, is_inside).is_ok(),
-    };
-    cell.size > 1 && !is_plain
+/// How the surface crosses the boundary of a leaf.
+#[derive(Clone, Debug)]
+pub(crate) enum Boundary {
+    /// As the leaf alone tells.
+    Plain,
+    /// In loops with more crossings, because a neighbour is smaller.
+    Refined(Vec<Vec<LoopStep>>),
+    /// In a way that only a leaf of the smallest size may have.
+    Tangled,
+}
+
+/// Returns how the surface crosses the boundary of a leaf. That of a square is never refined.
+pub(crate) fn boundary(tree: &Tree, cell: Cell, is_inside: impl Fn(Corner) -> bool) -> Boundary {
+    let is_refined = |step: &LoopStep| step.edge.size.min(step.face.size) < cell.size;
+    if cell.size == 1 {
+        return Boundary::Plain;
+    }
+    if tree.is_flat {
+        let is_plain = tree.chords(cell.base(), is_inside).is_ok_and(|found| found.len() < 2);
+        return if is_plain { Boundary::Plain } else { Boundary::Tangled };
+    }
+    match loops(tree, cell, is_inside) {
+        Ok(loops) if loops.iter().flatten().any(is_refined) => Boundary::Refined(loops),
+        Ok(_) => Boundary::Plain,
+        Err(Tangled) => Boundary::Tangled,
+    }
 }

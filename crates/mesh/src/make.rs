@@ -8,7 +8,7 @@ use crate::error::MeshError;
 use crate::examine::Sizes;
 use crate::field::LocalField;
 use crate::grid::{Cell, Grid};
-use crate::refine::{OnProgress, Refiner, Signs};
+use crate::refine::{Cells, OnProgress, Refiner};
 use crate::surface::Mesh;
 use crate::tree::Tree;
 use crate::vector::Vec3;
@@ -65,19 +65,18 @@ impl Maker<'_> {
         let prober = &field.prober();
         let sizes = Sizes::of(grid);
         let mut refiner = Refiner { prober, field, grid, error, sizes, max_cells };
-        let mut tree = Tree::new(grid.is_flat);
-        let mut signs = Signs::default();
-        refiner.grow(&mut tree, vec![grid.root()], progress)?;
-        let mut best = self.attempt::<S>(&refiner, &mut tree, &mut signs, None, progress)?;
+        let mut cells = Cells { tree: Tree::new(grid.is_flat), ..Cells::default() };
+        refiner.grow(&mut cells.tree, vec![grid.root()], progress)?;
+        let mut best = self.attempt::<S>(&refiner, &mut cells, None, progress)?;
         for _ in 0..ROUNDS {
-            let divided = divide(&mut tree, grid, &best.1.undecided);
+            let divided = divide(&mut cells.tree, grid, &best.1.undecided);
             if divided.is_empty() {
                 break;
             }
             refiner.sizes = Sizes::STRICT;
-            refiner.grow(&mut tree, divided, progress)?;
+            refiner.grow(&mut cells.tree, divided, progress)?;
             let before = Some(&best);
-            let next = self.attempt(&refiner, &mut tree, &mut signs, before, progress)?;
+            let next = self.attempt(&refiner, &mut cells, before, progress)?;
             let volume = |(_, proof): &(S, Proof)| proof.certificate.undecided_volume;
             if volume(&next) >= volume(&best) {
                 break;
@@ -91,13 +90,13 @@ impl Maker<'_> {
     fn attempt<S: Surface>(
         &self,
         refiner: &Refiner<'_, '_>,
-        tree: &mut Tree,
-        signs: &mut Signs,
+        cells: &mut Cells,
         before: Option<&(S, Proof)>,
         progress: OnProgress<'_>,
     ) -> Result<(S, Proof), MeshError> {
         let Self { truth, grid, error, max_cells, has_arcs, .. } = *self;
-        refiner.untangle(tree, signs, progress)?;
+        refiner.untangle(cells, progress)?;
+        let Cells { tree, signs, .. } = cells;
         let builder = Builder { prober: refiner.prober, grid, tree, signs, error, has_arcs };
         let surface = S::build(&builder, progress)?;
         let changes = before.map(|(before, proof)| {

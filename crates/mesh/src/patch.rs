@@ -88,12 +88,12 @@ impl Placer<'_, '_> {
         if bulge[0].max(bulge[1]) <= FLAT * self.error {
             return None;
         }
-        let target = nearest_to_planes(middle, &flat);
         let lo = self.grid.position(face.at);
         let hi = lo.map(|x| x + self.grid.length(face.size));
         let mut limits = inner([lo, hi], self.grid.margin(face.size));
         limits[0][axis] = lo[axis];
         limits[1][axis] = lo[axis];
+        let target = nearest_to_planes(middle, &flat, limits);
         let mut normal = add(flat[0].normal, flat[1].normal);
         normal[axis] = 0.0;
         let position = self.towards(middle, target, normal, limits)?;
@@ -125,7 +125,7 @@ impl Placer<'_, '_> {
             return Filling::Cone(self.grid.rounded(fallback));
         }
         let planes: Vec<SurfacePoint> = vertices.iter().map(|v| v.point).collect();
-        let target = nearest_to_planes(middle, &planes);
+        let target = nearest_to_planes(clamped(middle, limits), &planes, limits);
         let normal = planes.iter().fold([0.0; 3], |sum, plane| add(sum, plane.normal));
         let apex = self.towards(middle, target, normal, limits);
         Filling::Cone(apex.unwrap_or_else(|| self.grid.rounded(fallback)))

@@ -6,10 +6,10 @@ use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
 use crate::error::{MeshError, Phase, Progress};
-use crate::examine::{Sizes, Verdict, examine};
+use crate::examine::{Sizes, Verdict, examine, is_near};
 use crate::field::{LocalField, Prober, is_inside};
 use crate::grid::{Cell, Corner, Grid};
-use crate::loops::is_tangled;
+use crate::loops::{Boundary, boundary};
 use crate::patch::Placer;
 use crate::tree::Tree;
 
@@ -18,6 +18,16 @@ const CHUNK: usize = 2048;
 
 /// The signs of corners: true for inside.
 pub(crate) type Signs = FxHashMap<Corner, bool>;
+
+/// The cells of a surface.
+#[derive(Debug, Default)]
+pub(crate) struct Cells {
+    pub(crate) tree: Tree,
+    pub(crate) signs: Signs,
+    /// Leaves whose triangles are near the surface beside smaller leaves, with the number of
+    /// crossings of their loops: if that has not changed, they need no further look.
+    pub(crate) near: FxHashMap<Cell, usize>,
+}
 
 /// Reports progress; stops the work if it breaks.
 pub(crate) type OnProgress<'a> = &'a mut dyn FnMut(Progress) -> ControlFlow<()>;
@@ -97,28 +107,57 @@ impl<'f> Refiner<'_, 'f> {
     }
 
     /// Splits leaves until the surface crosses the boundary of each in one loop, except in cells of
-    /// the smallest size.
+    /// the smallest size, and until their triangles are near the surface as far as samples tell.
     pub(crate) fn untangle(
         &self,
-        tree: &mut Tree,
-        signs: &mut Signs,
+        cells: &mut Cells,
         progress: OnProgress<'_>,
     ) -> Result<(), MeshError> {
         loop {
-            self.add_signs(tree, signs);
-            let sign = |at: Corner| signs.get(&at).copied().unwrap_or(false);
-            let fails = |cell: &Cell| is_tangled(tree, *cell, sign);
-            let tangled: Vec<bool> = tree.leaves.par_iter().map(fails).collect();
-            if !tangled.contains(&true) {
+            self.add_signs(&cells.tree, &mut cells.signs);
+            let boundaries = boundaries(cells);
+            let is_tangled = |it: &Boundary| matches!(it, Boundary::Tangled);
+            let fails = match boundaries.iter().any(is_tangled) {
+                true => boundaries.iter().map(is_tangled).collect(),
+                false => self.far(cells, &boundaries),
+            };
+            if !fails.contains(&true) {
                 return Ok(());
             }
-            let leaves = std::mem::take(&mut tree.leaves);
+            let leaves = std::mem::take(&mut cells.tree.leaves);
             let mut divided = Vec::new();
-            for (cell, is_tangled) in leaves.into_iter().zip(tangled) {
-                if is_tangled { divided.push(cell) } else { tree.leaves.push(cell) }
+            for (cell, fails) in leaves.into_iter().zip(fails) {
+                if fails { divided.push(cell) } else { cells.tree.leaves.push(cell) }
             }
-            self.grow(tree, divided, progress)?;
+            self.grow(&mut cells.tree, divided, progress)?;
         }
+    }
+
+    /// Returns, for each leaf, whether its triangles are far from the surface.
+    ///
+    /// `examine` decides about a cell without its neighbours. If one of them is smaller, the loop
+    /// has more crossings, and the vertex within the cell moves.
+    fn far(&self, cells: &mut Cells, boundaries: &[Boundary]) -> Vec<bool> {
+        let Cells { tree, near, .. } = cells;
+        let known = &*near;
+        let compare = |prober: &mut Prober<'f>, (cell, boundary): (&Cell, &Boundary)| {
+            let Boundary::Refined(loops) = boundary else { return None };
+            let count = loops.iter().map(Vec::len).sum();
+            if known.get(cell) == Some(&count) {
+                return None;
+            }
+            let mut placer = Placer { prober, grid: self.grid, error: self.error };
+            Some((count, is_near(&mut placer, *cell, loops)))
+        };
+        let leaves = tree.leaves.par_iter().zip(boundaries);
+        let found: Vec<Option<(usize, bool)>> =
+            leaves.map_init(|| self.prober.clone(), compare).collect();
+        for (cell, found) in tree.leaves.iter().zip(&found) {
+            if let Some((count, true)) = found {
+                near.insert(*cell, *count);
+            }
+        }
+        found.into_iter().map(|found| found.is_some_and(|(_, is_near)| !is_near)).collect()
     }
 
     /// Computes the signs of all corners of smallest edges of leaves.
@@ -151,4 +190,10 @@ impl<'f> Refiner<'_, 'f> {
             .collect();
         signs.extend(missing.into_iter().zip(found));
     }
+}
+
+/// Returns how the surface crosses the boundary of each leaf.
+fn boundaries(Cells { tree, signs, .. }: &Cells) -> Vec<Boundary> {
+    let sign = |at: Corner| signs.get(&at).copied().unwrap_or(false);
+    tree.leaves.par_iter().map(|cell| boundary(tree, *cell, sign)).collect()
 }

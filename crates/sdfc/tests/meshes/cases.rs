@@ -41,6 +41,19 @@ fn hard_scenes_give_valid_meshes() {
     }
 }
 
+/// The plate with holes of the cookbook.
+const PLATE: &str = "let bolts = cylinder(r: 0.12, h: 1).translate(x: 0.7).polar_repeat(8)\n\
+    cylinder(r: 1, h: 0.2) - bolts - cylinder(r: 0.35, h: 1)";
+
+#[test]
+fn scenes_with_edges_are_proven_with_few_triangles() {
+    for (source, relative, most) in [(PLATE, 0.005, 4100), ("box([1, 0.7, 0.5])", 0.001, 600)] {
+        let mesh = mesh(&scene(source), relative);
+        assert!(mesh.certificate.is_proven, "{source}: {}", mesh.certificate);
+        assert!(mesh.triangles.len() <= most, "{source}: {} triangles", mesh.triangles.len());
+    }
+}
+
 #[test]
 fn parts_cavities_and_holes_are_counted() {
     let source = "torus(1, 0.3)\n(sphere(1) - sphere(0.9)).translate(x: 4)\n\
