@@ -132,6 +132,7 @@ pub(crate) fn check_items<'a>(
         checker.modules[module].whole = import.whole;
     }
     let module = checker.add_module(&scene.tree.items, Some(""), false);
+    checker.name_params();
     for (import, module) in imports.iter().zip(library.len()..) {
         checker.check_imported(module, &import.tree);
     }
@@ -261,6 +262,18 @@ impl<'a> Checker<'a> {
         }
         checker.program.library = library.iter().map(|(file, _)| *file).collect();
         checker
+    }
+
+    /// Gives imported files with params the prefixes of their params' names.
+    fn name_params(&mut self) {
+        let has_params = |module: &usize| self.params.iter().any(|param| param.module == *module);
+        let path = |module: usize| Some((module, self.modules[module].path?));
+        let files = (0..self.modules.len()).filter(has_params).filter_map(path);
+        let (modules, paths): (Vec<_>, Vec<_>) =
+            files.filter(|(_, path)| !path.is_empty()).unzip();
+        for (module, prefix) in modules.into_iter().zip(import::param_prefixes(&paths)) {
+            self.modules[module].param_prefix = prefix;
+        }
     }
 
     /// Adds a diagnostic. During an attempt it may be discarded later.
