@@ -29,6 +29,7 @@ mod analytic;
 mod certify;
 mod cost;
 mod leaves;
+mod painted;
 mod planar;
 mod prepare;
 mod refute;
