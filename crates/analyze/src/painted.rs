@@ -41,8 +41,7 @@ pub(crate) fn painted(
 /// The material of a shape that states a colour which may not be opaque.
 fn translucent(graph: &Graph, id: ShapeId) -> Option<[NodeId; 6]> {
     let MaterialRule::Explicit(fields) = graph.shape(id).material else { return None };
-    let is_kept =
-        matches!(graph.node(fields[MaterialField::Color.index()]), Node::MaterialAt(..));
+    let is_kept = matches!(graph.node(fields[MaterialField::Color.index()]), Node::MaterialAt(..));
     let is_opaque = graph.as_number(fields[MaterialField::Coverage.index()]) == Some(1.0);
     (!is_kept && !is_opaque).then_some(fields)
 }

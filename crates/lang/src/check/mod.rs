@@ -9,6 +9,7 @@
 //! - `names`, `value`: what a name refers to;
 //! - `overload`: which declaration a call refers to;
 //! - `call`, `arguments`: how arguments are assigned to parameters;
+//! - `foreign`: calls of functions with names from other tools;
 //! - `kernel`, `builtins`, `math`, `iterate`: the functions of the kernel;
 //! - `operators`, `list`, `records`, `block`, `lambda`, `expr`: the forms of expressions;
 //! - `types`, `coerce`: which value can be used where;
@@ -31,6 +32,7 @@ mod clauses;
 mod coerce;
 mod decl;
 mod expr;
+mod foreign;
 mod iterate;
 pub(crate) mod kernel;
 mod lambda;
@@ -269,8 +271,7 @@ impl<'a> Checker<'a> {
         let has_params = |module: &usize| self.params.iter().any(|param| param.module == *module);
         let path = |module: usize| Some((module, self.modules[module].path?));
         let files = (0..self.modules.len()).filter(has_params).filter_map(path);
-        let (modules, paths): (Vec<_>, Vec<_>) =
-            files.filter(|(_, path)| !path.is_empty()).unzip();
+        let (modules, paths): (Vec<_>, Vec<_>) = files.filter(|(_, path)| !path.is_empty()).unzip();
         for (module, prefix) in modules.into_iter().zip(import::param_prefixes(&paths)) {
             self.modules[module].param_prefix = prefix;
         }

@@ -259,7 +259,10 @@ impl<'a> Checker<'a> {
             (Some(later), _) => found
                 .note_at(later, "it is declared here and can be used only after this line")
                 .help("move that line above this one"),
-            (None, Some(meant)) => meant.add_to(found),
+            (None, Some(meant)) => {
+                let here = meant.instead.clone();
+                self.call_form(name, &here, meant.add_to(found))
+            }
             (None, None) => found,
         };
         self.report(found);
