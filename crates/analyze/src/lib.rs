@@ -27,9 +27,9 @@
 
 mod analytic;
 mod certify;
+mod colored;
 mod cost;
 mod leaves;
-mod painted;
 mod planar;
 mod prepare;
 mod refute;

@@ -16,9 +16,9 @@ use sdfc_graph::{
 use crate::certify::conservative::{Uncertified, conservative_field};
 use crate::certify::inexact::inexact_operators;
 use crate::certify::quality::Qualities;
+use crate::colored::colored;
 use crate::cost::cost;
 use crate::leaves::count_leaves;
-use crate::painted::painted;
 use crate::report::{Report, shape_reports};
 use crate::reroll::materials::{fold_with_chains, reroll_materials};
 use crate::reroll::rewrite::{RerolledLoop, reroll};
@@ -50,7 +50,7 @@ struct Layer {
     distance: NodeId,
     material: Option<Material>,
     /// The weight of the parts with a colour; `None` if all colours are opaque.
-    painted: Option<NodeId>,
+    colored: Option<NodeId>,
     /// True if the gradient has length 1.
     has_unit_slope: bool,
 }
@@ -66,8 +66,8 @@ struct Formulas {
     distances: Vec<NodeId>,
     /// One for each distance, or none.
     materials: Vec<Material>,
-    /// See [`painted`]; one for each distance, or none.
-    painted: Vec<NodeId>,
+    /// See [`colored`]; one for each distance, or none.
+    colored: Vec<NodeId>,
     leaves: usize,
     loops: Vec<RerolledLoop>,
     unrolled_limit: usize,
@@ -88,7 +88,7 @@ pub(crate) fn planar_picture(
     let layer = |(index, shape): (usize, &ShapeId)| Layer {
         distance: formulas.distances[index],
         material: formulas.materials.get(index).copied(),
-        painted: formulas.painted.get(index).copied(),
+        colored: formulas.colored.get(index).copied(),
         has_unit_slope: unit_slopes.contains(shape),
     };
     let whole = layer((0, &root));
@@ -146,8 +146,8 @@ fn formulas(
         let material = expander.material(graph, shape, point)?;
         nodes.extend(seen_from_the_front(graph, &material));
     }
-    let painted = painted(graph, &shapes, point)?;
-    nodes.extend(seen_from_the_front(graph, &painted));
+    let colored = colored(graph, &shapes, point)?;
+    nodes.extend(seen_from_the_front(graph, &colored));
     let (uses_loops, unrolled_limit) =
         strategy.uses_loops(graph, nodes[0], &program.settings, None);
     let chains = if uses_loops { expander.material_chains(graph)? } else { Vec::new() };
@@ -161,8 +161,8 @@ fn formulas(
         (fields, loops) = (rerolled.roots, rerolled.loops);
     }
     let (conservative, distances) = (fields[0], fields[1..].to_vec());
-    let (materials, painted) = materials.split_at(materials.len() - painted.len());
-    let (materials, painted) = (materials.as_chunks().0.to_vec(), painted.to_vec());
+    let (materials, colored) = materials.split_at(materials.len() - colored.len());
+    let (materials, colored) = (materials.as_chunks().0.to_vec(), colored.to_vec());
     let (uncertified, divided) = (field.uncertified, field.divided);
     Ok(Formulas {
         conservative,
@@ -170,7 +170,7 @@ fn formulas(
         divided,
         distances,
         materials,
-        painted,
+        colored,
         leaves,
         loops,
         unrolled_limit,
@@ -217,10 +217,10 @@ fn color_of(graph: &mut Graph, layer: &Layer, below: NodeId) -> NodeId {
     let field = |field: MaterialField| material[field.index()];
     let coverage = field(MaterialField::Coverage);
     let own = field(MaterialField::Color);
-    let color = match layer.painted {
-        Some(painted) if painted != coverage => {
-            // default * (1 - painted) + below * (painted - coverage) + own * coverage
-            let base = graph.ternary(Ternary::Mix, default, below, painted);
+    let color = match layer.colored {
+        Some(colored) if colored != coverage => {
+            // default * (1 - colored) + below * (colored - coverage) + own * coverage
+            let base = graph.ternary(Ternary::Mix, default, below, colored);
             let change = graph.sub(own, below);
             let coverage = graph.splat(Type::Vec3, coverage);
             let change = graph.mul(change, coverage);

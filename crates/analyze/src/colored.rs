@@ -10,7 +10,7 @@ use sdfc_graph::{
 
 /// Returns the weight of the parts of each shape that have a colour, whatever its alpha, at a
 /// point. Returns nothing if all colours of the graph are opaque: then it is the coverage.
-pub(crate) fn painted(
+pub(crate) fn colored(
     graph: &mut Graph,
     shapes: &[ShapeId],
     point: NodeId,
