@@ -202,12 +202,13 @@ pub fn locate(from: &str, written: &str) -> Result<String, String> {
 /// come as many folders as tell the file from all others: `house/storey` and `tower/storey`.
 /// Prefixes of different files are different.
 pub(crate) fn param_prefixes(paths: &[&str]) -> Vec<String> {
+    let deepest = paths.iter().map(|path| path.matches('/').count()).max().unwrap_or(0);
     let prefix = |path: &str| {
         let is_unique = |folders: usize| {
             let label = label(path, folders);
             paths.iter().filter(|other| self::label(other, folders) == label).count() == 1
         };
-        let folders = (0..=path.matches('/').count()).find(|folders| is_unique(*folders));
+        let folders = (0..=deepest).find(|folders| is_unique(*folders));
         // Files that differ only in their endings keep these: a label has no dot in its last part.
         folders.map_or_else(|| path.to_owned(), |folders| label(path, folders).to_owned())
     };
