@@ -173,7 +173,8 @@ sdfc_contour *sdfc_contour_make(const sdfc_scene *scene,
 /*
  Returns the contour as JSON, as `sdfc contour --json` writes it: its paths in the coordinates of
  the plane, the position and the directions of these coordinates in space, its area, length and
- bounds, and the certificate. Returns null for null.
+ bounds, and the certificate. `left_out` lists the solids or regions that the contour leaves out,
+ as in `sdfc_mesh_describe`. Returns null for null.
 
  # Safety
 
@@ -317,7 +318,9 @@ const uint32_t *sdfc_mesh_triangles(const sdfc_mesh *mesh, size_t *count);
 /*
  Returns what is known about the mesh as JSON, as `sdfc mesh --json` writes it: the numbers of
  its vertices and triangles, its volume, area and bounds, its connected parts, and the
- certificate. Returns null for null.
+ certificate. `left_out` lists the solids that have no limit, such as a floor, which the mesh
+ leaves out because others of the scene have limits; it is empty if there are none. Returns null
+ for null.
 
  # Safety
 
@@ -348,7 +351,8 @@ void sdfc_mesh_free(sdfc_mesh *mesh);
 
 /*
  Measures the scene, on all cores of the machine: volume, center of mass, inertia and extent as
- intervals that are proven to hold the truth, as `sdfc measure --json` writes them.
+ intervals that are proven to hold the truth, as `sdfc measure --json` writes them. `left_out`
+ lists the solids that are not measured, as in `sdfc_mesh_describe`.
 
  `options` is a JSON object with these keys, all of them optional; null is the same as `{}`.
  `error_relative`: how exact the volume is, as a fraction of itself, by default 0.001.

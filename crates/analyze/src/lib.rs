@@ -27,6 +27,7 @@
 
 mod analytic;
 mod certify;
+mod colored;
 mod cost;
 mod leaves;
 mod planar;

@@ -4,7 +4,7 @@
 //! size. The regions are layers, each over the ones before it. A layer covers the fraction `1/2 - d
 //! / (|grad d| w)` of a pixel of width w, clamped to 0..1: the part of the pixel on the inner side
 //! of a straight edge at the signed distance `d / |grad d|`. The gradient is not computed where its
-//! length is known to be 1.
+//! length is known to be 1. Through a colour that is not opaque, the layers below show.
 //!
 //! Shaders and the CPU renderer evaluate the same formula, as they do for fields.
 
@@ -16,6 +16,7 @@ use sdfc_graph::{
 use crate::certify::conservative::{Uncertified, conservative_field};
 use crate::certify::inexact::inexact_operators;
 use crate::certify::quality::Qualities;
+use crate::colored::colored;
 use crate::cost::cost;
 use crate::leaves::count_leaves;
 use crate::report::{Report, shape_reports};
@@ -48,6 +49,8 @@ type Material = [NodeId; 6];
 struct Layer {
     distance: NodeId,
     material: Option<Material>,
+    /// The weight of the parts with a colour; `None` if all colours are opaque.
+    colored: Option<NodeId>,
     /// True if the gradient has length 1.
     has_unit_slope: bool,
 }
@@ -63,6 +66,8 @@ struct Formulas {
     distances: Vec<NodeId>,
     /// One for each distance, or none.
     materials: Vec<Material>,
+    /// See [`colored`]; one for each distance, or none.
+    colored: Vec<NodeId>,
     leaves: usize,
     loops: Vec<RerolledLoop>,
     unrolled_limit: usize,
@@ -83,6 +88,7 @@ pub(crate) fn planar_picture(
     let layer = |(index, shape): (usize, &ShapeId)| Layer {
         distance: formulas.distances[index],
         material: formulas.materials.get(index).copied(),
+        colored: formulas.colored.get(index).copied(),
         has_unit_slope: unit_slopes.contains(shape),
     };
     let whole = layer((0, &root));
@@ -138,8 +144,10 @@ fn formulas(
     let leaves = count_leaves(graph, &mut expander, root, point)?;
     for &shape in shapes.iter().filter(|_| scene.has_materials) {
         let material = expander.material(graph, shape, point)?;
-        nodes.extend(seen_from_the_front(graph, material));
+        nodes.extend(seen_from_the_front(graph, &material));
     }
+    let colored = colored(graph, &shapes, point)?;
+    nodes.extend(seen_from_the_front(graph, &colored));
     let (uses_loops, unrolled_limit) =
         strategy.uses_loops(graph, nodes[0], &program.settings, None);
     let chains = if uses_loops { expander.material_chains(graph)? } else { Vec::new() };
@@ -153,7 +161,8 @@ fn formulas(
         (fields, loops) = (rerolled.roots, rerolled.loops);
     }
     let (conservative, distances) = (fields[0], fields[1..].to_vec());
-    let materials = materials.as_chunks().0.to_vec();
+    let (materials, colored) = materials.split_at(materials.len() - colored.len());
+    let (materials, colored) = (materials.as_chunks().0.to_vec(), colored.to_vec());
     let (uncertified, divided) = (field.uncertified, field.divided);
     Ok(Formulas {
         conservative,
@@ -161,17 +170,18 @@ fn formulas(
         divided,
         distances,
         materials,
+        colored,
         leaves,
         loops,
         unrolled_limit,
     })
 }
 
-/// A material whose normal and direction to the eye are z.
-fn seen_from_the_front(graph: &mut Graph, material: Material) -> Material {
+/// Fields of materials whose normal and direction to the eye are z.
+fn seen_from_the_front(graph: &mut Graph, fields: &[NodeId]) -> Vec<NodeId> {
     let front = graph.constant(Type::Vec3, &[0.0, 0.0, 1.0]);
     let pairs = SurfaceVector::ALL.map(|vector| (graph.surface_vector(vector), front));
-    material.map(|field| substitute(graph, field, &pairs))
+    fields.iter().map(|&field| substitute(graph, field, &pairs)).collect()
 }
 
 /// The material of the topmost layer at a point; outside of all layers, of the nearest one.
@@ -189,7 +199,7 @@ fn topmost(graph: &mut Graph, nearest: Material, layers: &[Layer]) -> Material {
 /// The background with all layers over it.
 fn layered(graph: &mut Graph, background: NodeId, layers: &[Layer], point: NodeId) -> NodeId {
     layers.iter().fold(background, |below, layer| {
-        let color = color_of(graph, layer.material);
+        let color = color_of(graph, layer, below);
         let (distance, _) = in_pixels(graph, layer, point);
         let half = graph.number(0.5);
         let covered = graph.sub(half, distance);
@@ -198,14 +208,26 @@ fn layered(graph: &mut Graph, background: NodeId, layers: &[Layer], point: NodeI
     })
 }
 
-/// What a material shows without any light on it: its colour and the light that it emits.
-fn color_of(graph: &mut Graph, material: Option<Material>) -> NodeId {
+/// What a layer shows without any light on it: its colour over the one below, and the light that it
+/// emits.
+fn color_of(graph: &mut Graph, layer: &Layer, below: NodeId) -> NodeId {
     let default = MaterialField::Color.default_value();
     let default = graph.constant(Type::Vec3, &default[..3]);
-    let Some(material) = material else { return default };
+    let Some(material) = layer.material else { return default };
     let field = |field: MaterialField| material[field.index()];
     let coverage = field(MaterialField::Coverage);
-    let color = graph.ternary(Ternary::Mix, default, field(MaterialField::Color), coverage);
+    let own = field(MaterialField::Color);
+    let color = match layer.colored {
+        Some(colored) if colored != coverage => {
+            // default * (1 - colored) + below * (colored - coverage) + own * coverage
+            let base = graph.ternary(Ternary::Mix, default, below, colored);
+            let change = graph.sub(own, below);
+            let coverage = graph.splat(Type::Vec3, coverage);
+            let change = graph.mul(change, coverage);
+            graph.add(base, change)
+        }
+        Some(_) | None => graph.ternary(Ternary::Mix, default, own, coverage),
+    };
     graph.add(color, field(MaterialField::Emission))
 }
 

@@ -75,7 +75,8 @@ pub unsafe extern "C" fn sdfc_contour_make(
 
 /// Returns the contour as JSON, as `sdfc contour --json` writes it: its paths in the coordinates of
 /// the plane, the position and the directions of these coordinates in space, its area, length and
-/// bounds, and the certificate. Returns null for null.
+/// bounds, and the certificate. `left_out` lists the solids or regions that the contour leaves out,
+/// as in `sdfc_mesh_describe`. Returns null for null.
 ///
 /// # Safety
 ///

@@ -172,7 +172,9 @@ unsafe fn rows<T>(
 
 /// Returns what is known about the mesh as JSON, as `sdfc mesh --json` writes it: the numbers of
 /// its vertices and triangles, its volume, area and bounds, its connected parts, and the
-/// certificate. Returns null for null.
+/// certificate. `left_out` lists the solids that have no limit, such as a floor, which the mesh
+/// leaves out because others of the scene have limits; it is empty if there are none. Returns null
+/// for null.
 ///
 /// # Safety
 ///
@@ -215,7 +217,8 @@ pub unsafe extern "C" fn sdfc_mesh_free(mesh: *mut Mesh) {
 }
 
 /// Measures the scene, on all cores of the machine: volume, center of mass, inertia and extent as
-/// intervals that are proven to hold the truth, as `sdfc measure --json` writes them.
+/// intervals that are proven to hold the truth, as `sdfc measure --json` writes them. `left_out`
+/// lists the solids that are not measured, as in `sdfc_mesh_describe`.
 ///
 /// `options` is a JSON object with these keys, all of them optional; null is the same as `{}`.
 /// `error_relative`: how exact the volume is, as a fraction of itself, by default 0.001.

@@ -99,6 +99,24 @@ fn a_mesh_is_that_of_the_library() {
 }
 
 #[test]
+fn descriptions_list_solids_that_have_no_limit() {
+    let source = "sphere(1)\nplane(y: -2)\n";
+    unsafe {
+        let text = source.as_ptr().cast();
+        let scene = sdfc_compile(c"a.sdf".as_ptr(), text, source.len(), null_mut());
+        let options = c"{ \"error_relative\": 0.1 }".as_ptr();
+        let mesh = sdfc_mesh_make(scene, options, None, null_mut());
+        let contour = sdfc_contour_make(scene, options, None, null_mut());
+        let floor = serde_json::json!(["`plane(y: -2)` (line 2)"]);
+        assert_eq!(json(sdfc_mesh_describe(mesh))["left_out"], floor);
+        assert_eq!(json(sdfc_contour_describe(contour))["left_out"], floor);
+        sdfc_contour_free(contour);
+        sdfc_mesh_free(mesh);
+        sdfc_scene_free(scene);
+    }
+}
+
+#[test]
 fn a_contour_and_measurements_are_those_of_the_library() {
     let scene = scene();
     unsafe {

@@ -64,6 +64,21 @@ fn a_param_that_decides_what_is_built_is_set_like_any_other() {
 }
 
 #[test]
+fn params_of_imported_files_of_the_same_name_are_set_one_by_one() {
+    let storey = "param width = 1 in 0.5..3\nfn storey() = box(width)\n";
+    let scene = "import storey from \"house/storey.sdf\"\nimport storey as tower from \
+                 \"tower/storey.sdf\"\nstorey()\ntower().translate(x: 4)\ncamera(eye: [0, 0, 9])\n";
+    let files = [("params.sdf", scene), ("house/storey.sdf", storey), ("tower/storey.sdf", storey)];
+    let folder = folder(&files);
+    let [plain, house, tower] =
+        ["", "--set house/storey.width=2", "--set tower/storey.width=2"].map(|o| drawn(&folder, o));
+    assert!(plain != house && plain != tower && house != tower);
+    let both = "write `house/storey.width` or `tower/storey.width`";
+    refused(&folder, "--set storey.width=2", both);
+    refused(&folder, "--set tower/storey.widht=2", "did you mean `tower/storey.width`?");
+}
+
+#[test]
 fn wrong_values_are_refused_by_name() {
     let folder = with_params();
     refused(&folder, "--set q=1", "it has r, tilt, paint");

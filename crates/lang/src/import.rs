@@ -196,10 +196,32 @@ pub fn locate(from: &str, written: &str) -> Result<String, String> {
     }
 }
 
-/// The prefix of the names of a file's params: `gear` for `parts/gear.sdf`.
-pub(crate) fn stem(path: &str) -> &str {
-    let name = path.rsplit_once('/').map_or(path, |(_, name)| name);
-    name.split_once('.').map_or(name, |(stem, _)| stem)
+/// Returns the prefix of the names of each file's params, for the paths of all files with params.
+///
+/// The prefix is the name of the file without its ending: `gear` for `parts/gear.sdf`. Before it
+/// come as many folders as tell the file from all others: `house/storey` and `tower/storey`.
+/// Prefixes of different files are different.
+pub(crate) fn param_prefixes(paths: &[&str]) -> Vec<String> {
+    let deepest = paths.iter().map(|path| path.matches('/').count()).max().unwrap_or(0);
+    let prefix = |path: &str| {
+        let is_unique = |folders: usize| {
+            let label = label(path, folders);
+            paths.iter().filter(|other| self::label(other, folders) == label).count() == 1
+        };
+        let folders = (0..=deepest).find(|folders| is_unique(*folders));
+        // Files that differ only in their endings keep these: a label has no dot in its last part.
+        folders.map_or_else(|| path.to_owned(), |folders| label(path, folders).to_owned())
+    };
+    paths.iter().map(|path| prefix(path)).collect()
+}
+
+/// The name of a file without its ending, after its innermost folders: `b/gear` for
+/// `a/b/gear.sdf` and one folder.
+fn label(path: &str, folders: usize) -> &str {
+    let start = path.rmatch_indices('/').nth(folders).map_or(0, |(slash, _)| slash + 1);
+    let name = path.rfind('/').map_or(0, |slash| slash + 1);
+    let end = path[name..].find('.').map_or(path.len(), |dot| name + dot);
+    &path[start..end]
 }
 
 #[cfg(test)]
@@ -218,7 +240,22 @@ mod tests {
 
     #[test]
     fn the_prefix_of_params_is_the_name_of_their_file() {
-        assert_eq!(stem("parts/gear.sdf"), "gear");
-        assert_eq!(stem("gear"), "gear");
+        assert_eq!(param_prefixes(&["parts/gear.sdf", "rack"]), ["gear", "rack"]);
+        assert_eq!(param_prefixes(&["v1.2/gear.sdf"]), ["gear"]);
+    }
+
+    #[test]
+    fn files_of_the_same_name_have_the_fewest_folders_that_tell_them_apart() {
+        let paths = ["a/house/storey.sdf", "a/tower/storey.sdf", "storey.sdf", "a/roof.sdf"];
+        let expected = ["house/storey", "tower/storey", "storey", "roof"];
+        assert_eq!(param_prefixes(&paths), expected);
+        let paths = ["a/b/c/x.sdf", "d/b/c/x.sdf", "e/x.sdf"];
+        assert_eq!(param_prefixes(&paths), ["a/b/c/x", "d/b/c/x", "e/x"]);
+    }
+
+    #[test]
+    fn files_that_differ_only_in_their_endings_have_different_prefixes() {
+        let paths = ["a/x.sdf", "a/x.old.sdf", "b/x.sdf"];
+        assert_eq!(param_prefixes(&paths), ["a/x.sdf", "a/x.old.sdf", "b/x"]);
     }
 }

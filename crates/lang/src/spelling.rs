@@ -32,8 +32,9 @@ pub fn meant<'n>(name: &str, names: impl Iterator<Item = &'n str>) -> Option<Mea
     let names: Vec<&str> = names.collect();
     let here =
         |here: &str| Meant { message: format!("that is `{here}` here"), instead: here.to_owned() };
-    synonyms::respelt(name, &names)
-        .map(ask)
+    synonyms::of_quilez(name)
+        .map(here)
+        .or_else(|| synonyms::respelt(name, &names).map(ask))
         .or_else(|| synonyms::here(name).map(here))
         .or_else(|| {
             let [message, instead] = synonyms::absent(name)?.map(str::to_owned);

@@ -6,20 +6,27 @@
 const ROWS: &[(&str, &str)] = &[
     // Shapes.
     ("sphere", "ball orb"),
-    ("box", "cube cuboid block brick"),
-    ("rounded_box", "roundbox rbox roundedcube roundcube"),
+    ("box", "cube cuboid block brick fbox fboxcheap"),
+    ("rounded_box", "roundbox rbox roundedcube roundcube fboxround"),
     ("mitred_box", "boxsharp"),
     ("capsule", "pill stick line verticalcapsule"),
     ("torus", "donut doughnut"),
-    ("cylinder", "rod"),
+    ("cylinder", "rod infinitecylinder"),
     ("capped_cone", "frustum truncatedcone"),
     ("pyramid", "squarepyramid"),
     ("plane", "ground halfspace floorplane"),
     ("ellipsoid", "spheroid"),
     ("circle", "disc disk"),
     ("rect", "rectangle square box2 box2d"),
-    ("regular_polygon", "ngon hexagon pentagon octagon"),
+    ("regular_polygon", "ngon hexagon pentagon octagon octogon"),
     ("triangle", "equilateraltriangle"),
+    ("isosceles_triangle", "triangleisosceles"),
+    ("triangle_plate", "udtriangle"),
+    ("quad_plate", "udquad quad"),
+    ("star", "star4 star5 star6 pentagram"),
+    ("oriented_rect", "orientedbox"),
+    ("plus", "sdcross"),
+    ("staircase", "sdstairs"),
     ("quadratic_bezier", "bezier"),
     ("heightfield", "terrain heightmap"),
     ("menger", "mengersponge sponge"),
@@ -27,27 +34,30 @@ const ROWS: &[(&str, &str)] = &[
     ("text", "label letters glyphs"),
     // Operators.
     ("union", "add merge combine join unite together group opu"),
-    ("difference", "subtract subtraction cut minus ops"),
+    ("difference", "subtract subtraction substraction cut minus ops"),
     ("intersection", "intersect common opi"),
     (
         "union(a, b, blend: smooth(0.1))",
-        "smin smoothunion smoothmin unionsmooth blob metaballs polysmin",
+        "smin smoothunion smoothmin unionsmooth blob metaballs polysmin opblend opsmooth",
     ),
-    ("difference(a, b, blend: smooth(0.1))", "smoothdifference smoothsubtraction smoothsubtract"),
+    (
+        "difference(a, b, blend: smooth(0.1))",
+        "smoothdifference smoothsubtraction smoothsubtract smoothsubstraction",
+    ),
     ("intersection(a, b, blend: smooth(0.1))", "smax smoothintersection smoothmax smoothintersect"),
-    ("union(a, b, blend: fillet(0.1))", "unionround roundunion"),
-    ("union(a, b, blend: chamfer(0.1))", "unionchamfer chamferunion"),
-    ("union(a, b, blend: stairs(0.1, 4))", "unionstairs stairsunion"),
-    ("translate", "move shift moved"),
+    ("union(a, b, blend: fillet(0.1))", "unionround roundunion fopunionround"),
+    ("union(a, b, blend: chamfer(0.1))", "unionchamfer chamferunion fopunionchamfer"),
+    ("union(a, b, blend: stairs(0.1, 4))", "unionstairs stairsunion fopunionstairs"),
+    ("translate", "move shift moved optx"),
     ("rotate", "rotatex rotatey rotatez rotation"),
     ("scale", "resize zoom"),
-    ("mirror", "reflect flip symmetric symx symmetry"),
-    ("repeat", "tile mod1 mod2 mod3 domainrepetition rep infarray"),
+    ("mirror", "reflect flip symmetric symmetry symx symy symz symxy symxz symyz"),
+    ("repeat", "tile mod1 mod2 mod3 pmod1 pmod2 pmod3 domainrepetition repetition rep infarray"),
     ("limited_repeat", "array replim repeatlimited replimited limitedrepetition gridcopies"),
-    ("polar_repeat", "radial modpolar circulararray polararray repeatpolar rotcopies"),
+    ("polar_repeat", "radial modpolar pmodpolar circulararray polararray repeatpolar rotcopies"),
     ("extrude", "linearextrude extrusion prism"),
     ("revolve", "rotateextrude revolution lathe"),
-    ("shell", "hollow"),
+    ("shell", "hollow annular"),
     ("round", "rounded rounding"),
     ("offset", "dilate inset grow expand inflate"),
     ("displace", "displacement bump"),
@@ -194,6 +204,35 @@ pub fn here(name: &str) -> Option<&'static str> {
     })
 }
 
+/// The kind of one of Quilez's functions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Quilez {
+    /// `sdSphere(p, r)`: its first argument is the point.
+    Shape,
+    /// `opRound(...)`.
+    Operator,
+}
+
+/// The kind of the function with a name, if it is one of Quilez's: a prefix, then a capital.
+pub fn quilez(name: &str) -> Option<Quilez> {
+    let (kind, rest) = match (name.strip_prefix("sd").or(name.strip_prefix("ud")), name) {
+        (Some(rest), _) => (Quilez::Shape, rest),
+        (None, name) => (Quilez::Operator, name.strip_prefix("op")?),
+    };
+    let rest = rest.strip_prefix('_').unwrap_or(rest);
+    let begins_a_word = rest.starts_with(|c: char| c.is_ascii_uppercase()) || name.contains('_');
+    begins_a_word.then_some(kind)
+}
+
+/// The shape to write for one of Quilez's whose name without its prefix is that of something else
+/// here: `cross` is a function of vectors.
+pub fn of_quilez(name: &str) -> Option<&'static str> {
+    quilez(name)?;
+    let name = plain(name);
+    let row = ROWS.iter().find(|(_, others)| others.split(' ').any(|other| other == name));
+    row.map(|(here, _)| *here)
+}
+
 /// The name among `names` that differs only in capitals, underscores or the prefixes of Quilez's
 /// functions. Among several it is the first in alphabetical order.
 pub fn respelt<'n>(name: &str, names: &[&'n str]) -> Option<&'n str> {
@@ -271,6 +310,11 @@ mod tests {
         assert_eq!(here("linear_extrude"), Some("extrude"));
         assert_eq!(here("ln"), Some("log"));
         assert_eq!(here("teapot"), None);
+        assert_eq!(of_quilez("sdCross"), Some("plus"));
+        assert_eq!(of_quilez("sdSphere"), None);
+        assert_eq!(quilez("udQuad"), Some(Quilez::Shape));
+        assert_eq!(quilez("op_round"), Some(Quilez::Operator));
+        assert_eq!([quilez("operate"), quilez("sdfc"), quilez("union")], [None; 3]);
         assert!(absent("hull").is_some_and(|[message, _]| message.contains("round_cone")));
         assert!(absent("minkowski").is_some_and(|[message, _]| message.contains("a.round(0.1)")));
         assert_eq!(absent("box"), None);

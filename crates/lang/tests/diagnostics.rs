@@ -19,6 +19,28 @@ macro_rules! assert_findings {
 }
 
 #[test]
+fn functions_of_quilez_are_answered_with_a_call() {
+    assert_findings!(all(&[
+        "sdSphere(p - vec3(1, 0, 0), 1)",
+        "sdBox(p, [1, 1, 1])\nsdCapsule(p, [0, 0, 0], [1, 1, 1], 0.1)\nsdTorus(p, vec2(1, 0.2))",
+        "solid s() = sdSphere(p, 1)\ns()",
+        "opUnion(sphere(1), box(1))\nopSubtraction(sphere(1), box(1))\nopRound(sphere(1), 0.1)",
+        "opSmoothUnion(sphere(1), box(1), 0.2)\nopSmoothSubstraction(sphere(1), box(1), 0.1)",
+        "sdCross(p, [1, 0.5], 0)\nudQuad(p, [0, 0, 0])\nsdTriangleIsosceles(p, [1, 1])\nsdStar5(p)",
+        "opRepetition(sphere(1), 2)\nopTwist(sphere(1), 2)\nopBlend(sphere(1), box(1))\nsdTeapot(p)",
+    ]));
+}
+
+#[test]
+fn a_shape_that_is_meant_for_solids_is_reported_with_the_word_to_write() {
+    assert_findings!(all(&[
+        "shape half(a: solid) = max(a(p), p.y)\nhalf(sphere(1))",
+        "shape rod() = length(p.xz) - 1\nrod()",
+        "solid s(a: solid) = a(p.xz)\ns(sphere(1))",
+    ]));
+}
+
+#[test]
 fn wrong_names_are_reported() {
     assert_findings!(all(&[
         "spere(1)",

@@ -79,6 +79,28 @@ fn a_scene_of_several_files_elaborates() {
 }
 
 #[test]
+fn params_of_files_with_the_same_name_have_different_names() {
+    let storey = "param width = 1 in 0..2\nfn storey() = box(width)\n";
+    let scene = "import storey from \"house/storey.sdf\"
+import storey as tower, width from \"tower/storey.sdf\"
+import roof from \"roof/storey.sdf\"
+roof()
+storey()
+tower().translate(x: width)
+";
+    let mut sources = sdfc_diagnostics::Sources::new();
+    let file = sources.add("scene.sdf", scene);
+    let roof = "fn roof() = sphere(1)\n";
+    let files = [("house/storey.sdf", storey), ("tower/storey.sdf", storey)];
+    let files = folder(&[files.as_slice(), &[("roof/storey.sdf", roof)]].concat());
+    let (elaborated, found) = front_with_imports(&mut sources, file, &files);
+    assert!(found.is_empty(), "{}", render(&sources, &found, false));
+    let names: Vec<String> =
+        elaborated.expect("a scene").scene.params.into_iter().map(|param| param.name).collect();
+    assert_eq!(names, ["house/storey.width", "tower/storey.width"]);
+}
+
+#[test]
 fn imports_that_cannot_be_loaded_are_errors() {
     let scene = "import a from \"none.sdf\"
 import b from \"../up.sdf\"

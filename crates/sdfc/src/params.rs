@@ -50,7 +50,18 @@ pub enum ParamError {
     },
 }
 
+/// Says which param a name may have meant: params of imported files that end in the name, one with
+/// nearly the name, or all.
 fn known_params(name: &str, known: &[String]) -> String {
+    let is_in_a_file = |param: &&String| {
+        let before = param.strip_suffix(name);
+        before.is_some_and(|before| before.ends_with(['.', '/']))
+    };
+    let quoted = |param: &String| format!("`{param}`");
+    let in_files: Vec<String> = known.iter().filter(is_in_a_file).map(quoted).collect();
+    if !name.is_empty() && !in_files.is_empty() {
+        return format!("write {}", in_files.join(" or "));
+    }
     if let Some(near) = sdfc_lang::nearest_name(name, known.iter().map(String::as_str)) {
         return format!("did you mean `{near}`?");
     }

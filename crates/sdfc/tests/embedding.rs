@@ -223,6 +223,41 @@ fn a_scene_reads_no_file_unless_its_resolver_does() {
     }
 }
 
+struct Storeys;
+
+impl Resolver for Storeys {
+    fn read(&self, _: &str) -> Result<String, String> {
+        Ok("param width = 1 in 0.5..3\nfn storey() = box(width)\n".to_owned())
+    }
+}
+
+#[test]
+fn params_of_files_with_the_same_name_are_set_and_reflected_one_by_one() {
+    let text = "import storey from \"house/storey.sdf\"\nimport storey as tower from \
+                \"tower/storey.sdf\"\nstorey()\ntower().translate(x: 5)";
+    let compiler = Compiler::new().resolver(&Storeys);
+    let scene = compiler.compile("a.sdf", text).unwrap_or_else(|e| panic!("{e}"));
+    let mut frame = scene.defaults();
+    scene.set_param(&mut frame, "tower/storey.width", "2").unwrap_or_else(|e| panic!("{e}"));
+    assert_eq!([frame.params[0][0], frame.params[1][0]], [1.0, 2.0]);
+    for (name, help) in [
+        ("storey.width", "write `house/storey.width` or `tower/storey.width`"),
+        ("width", "write `house/storey.width` or `tower/storey.width`"),
+        ("house/storey.widht", "did you mean `house/storey.width`?"),
+    ] {
+        let error = scene.set_param(&mut frame, name, "2").expect_err("unknown");
+        assert_eq!(error.to_string(), format!("the scene has no param `{name}`; {help}"));
+    }
+    let options = ShaderOptions::new();
+    let written = scene.write_shader(&options).unwrap_or_else(|e| panic!("{e}"));
+    let reflected = scene.reflect(&options, &written).params;
+    let names: Vec<[&str; 2]> =
+        reflected.iter().map(|row| [row.name.as_str(), row.param.as_str()]).collect();
+    let [house, tower] = ["house", "tower"]
+        .map(|folder| [format!("{folder}_storey_width"), format!("{folder}/storey.width")]);
+    assert_eq!(names, [house.each_ref().map(String::as_str), tower.each_ref().map(String::as_str)]);
+}
+
 #[test]
 fn a_resolver_is_asked_for_nothing_outside_the_folder_of_the_scene() {
     let asked = Asked::default();

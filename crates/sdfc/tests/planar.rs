@@ -53,6 +53,51 @@ fn emission_adds_to_the_colour_and_a_region_without_a_material_has_the_default_o
     assert_eq!(srgb(&plain, [4, 4]), [linear_to_srgb8(0.8); 3]);
 }
 
+/// The middle of a picture of what is below and a circle over it.
+fn middle(below: &str, circle: &str) -> [u8; 3] {
+    let text = format!("{below}\n{circle}\nbackground(#0f0){CAMERA}");
+    srgb(&drawn(&text, &options([9, 9])), [4, 4])
+}
+
+#[test]
+fn layers_show_through_a_colour_that_is_not_opaque() {
+    let half = linear_to_srgb8(0.5);
+    let near = |found: [u8; 3], expected: [u8; 3]| {
+        let is_near = found.iter().zip(expected).all(|(a, b)| a.abs_diff(b) <= 1);
+        assert!(is_near, "{found:?}, expected {expected:?}");
+    };
+    let blue = "circle(1).color(rgb(0, 0, 1, 0.5))";
+    near(middle("rect([2, 2]).color(#f00)", blue), [half, 0, half]);
+    near(middle("", blue), [0, half, half]);
+    near(middle("", "circle(1).color(fn(q: vec3) = rgb(0, 0, 1, 0.5 + q.x))"), [0, half, half]);
+    // Colours of one region cover each other, and the result its layer.
+    near(middle("", "circle(1).color(#f00).color(rgb(0, 0, 1, 0.5))"), [half, 0, half]);
+    let quarter = linear_to_srgb8(0.25);
+    let twice = "circle(1).color(rgb(1, 0, 0, 0.5)).color(rgb(0, 0, 1, 0.5))";
+    near(middle("", twice), [quarter, quarter, half]);
+    let grey = [linear_to_srgb8(0.8); 3];
+    near(middle("rect([2, 2]).color(#f00)", "circle(1)"), grey);
+    near(middle("rect([2, 2]).color(#f00)", "circle(1).roughness(0.1)"), grey);
+    // The part of a union without a colour stays opaque.
+    let union = "union(circle(1), circle(0.5).color(rgb(0, 0, 1, 0.5)).translate([1.5, 0]))";
+    near(middle("rect([2, 2]).color(#f00)", union), grey);
+}
+
+#[test]
+fn a_param_sets_how_much_shows_through() {
+    let text = "param tint = rgb(0, 0, 1, 0.5)\nrect([2, 2]).color(#f00)\ncircle(1).color(tint)";
+    let scene = scene(&(text.to_owned() + CAMERA));
+    let middle = |tint: [f64; 4]| {
+        let mut frame = scene.defaults();
+        scene.set(&mut frame, "tint", tint).unwrap();
+        let options = options([9, 9]).backend(Backend::Cpu).frame(frame);
+        srgb(&scene.render(&options, &mut no_progress).unwrap().image, [4, 4])
+    };
+    assert_eq!(middle([0.0, 0.0, 1.0, 0.0]), [255, 0, 0]);
+    assert_eq!(middle([0.0, 0.0, 1.0, 1.0]), [0, 0, 255]);
+    assert_eq!(middle([0.0, 0.0, 1.0, 0.5]), [linear_to_srgb8(0.5), 0, linear_to_srgb8(0.5)]);
+}
+
 /// The part of each pixel that is inside, by the sign of a field at 32x32 points of the pixel, and
 /// by the picture of a white region before black.
 fn coverages(region: &str, side: u32, inside: impl Fn([f64; 2]) -> bool) -> Vec<[f64; 2]> {

@@ -122,6 +122,11 @@ const SCENES: &[(&str, &str)] = &[
         "solid s() = sqrt((3 * p.x + p.y) * (3 * p.x + p.y) + 4 * p.z * p.z + p.y * p.y + 0.01) - 0.7\n\
          s()",
     ),
+    (
+        "blend with an exponential, without clauses",
+        "solid s(a: solid, b: solid) = min(a(p), b(p)) - 0.1 * exp(-abs(a(p) - b(p)))\n\
+         s(sphere(0.7), box(1).translate(x: 0.6))",
+    ),
     ("outline shrunk, extruded and rounded", "circle(0.5).offset(-0.1).extrude(0.3).round(0.1)"),
     (
         "claim behind an offset and a sign",
@@ -351,6 +356,29 @@ fn a_blend_that_reaches_past_a_constants_bounds_is_not_certified() {
     let text = format!("{own}union(bar(), sphere(0.7), blend: smooth(0.2))");
     assert!(!scene("blend", &text).report().uncertified.is_empty());
     assert!(scene("alone", &format!("{own}bar()")).report().uncertified.is_empty());
+}
+
+#[test]
+fn blends_that_are_written_as_formulas_have_bounds_near_those_of_their_operands() {
+    let largest = |formula: &str| {
+        let text = format!(
+            "solid mix2(a: solid, b: solid, k = 0.1) = {formula}\nmix2(sphere(1), box(1))\n"
+        );
+        let scene = scene(formula, &text);
+        let [low, high] = scene.bounds_at(&scene.defaults()).expect("it has bounds");
+        high.into_iter().chain(low.map(|low| -low)).fold(0.0, f64::max)
+    };
+    // The distance to the ball is at least 0 outside of its bounds, and these subtract at most 0.1.
+    for formula in [
+        "min(a(p), b(p)) - 0.1 * exp(-abs(a(p) - b(p)))",
+        "min(a(p), b(p)) - k * exp(-abs(a(p) - b(p)) / k)",
+        "min(a(p), b(p)) - 0.1 / (1 + abs(a(p) - b(p)))",
+        "-k * log(exp(-a(p) / k) + exp(-b(p) / k))",
+        "{ let h = max(k - abs(a(p) - b(p)), 0) / k; min(a(p), b(p)) - h * h * k / 4 }",
+    ] {
+        let largest = largest(formula);
+        assert!((1.0..1.11).contains(&largest), "{formula}: {largest}");
+    }
 }
 
 #[test]

@@ -96,7 +96,7 @@ fn declare_raw(
                 let param = program.params.get(index as usize);
                 let value = param.map_or([0.0; 4], |param| param.default);
                 let name = input_name(program, input);
-                Raw::Constant(declare_constant(module, name, ty, value))
+                Raw::Constant(declare_constant(module, &name, ty, value))
             }
             FrameInput::Time | FrameInput::Frame => {
                 let name = if input == FrameInput::Time { "time" } else { "frame" };

@@ -127,15 +127,17 @@ pub(crate) fn raw_inputs(program: &Program, roots: &[NodeId]) -> Vec<(FrameInput
     inputs
 }
 
-/// The name of an input in the scene.
-pub(crate) fn input_name(program: &Program, input: FrameInput) -> &str {
-    match input {
+/// The name of an input in shaders: its name in the scene, with `_` for what is not a letter, digit
+/// or `_`, as in `storey_width` for `storey.width`. naga makes equal names different, by a number.
+pub(crate) fn input_name(program: &Program, input: FrameInput) -> String {
+    let name = match input {
         FrameInput::Param(index) => {
             program.params.get(index as usize).map_or("param", |param| param.name.as_str())
         }
         FrameInput::Time => "time",
         FrameInput::Frame => "frame",
-    }
+    };
+    name.replace(|c: char| !c.is_ascii_alphanumeric() && c != '_', "_")
 }
 
 /// Declares the uniform structure `Params` of these inputs, in this order.
@@ -162,7 +164,7 @@ pub(crate) fn declare_members(
                 types::value(&mut module.types, ty)
             }
         };
-        let name = input_name(program, input).to_owned();
+        let name = input_name(program, input);
         described.push(Member { input, name: name.clone(), ty, offset, size });
         members.push(StructMember { name: Some(name), ty: member_type, binding: None, offset });
         offset += size;
@@ -228,11 +230,11 @@ pub(crate) fn declare_variable(
 }
 
 /// The name of a per-frame value in the scene.
-pub(crate) fn frame_name(program: &Program, node: NodeId) -> &str {
+pub(crate) fn frame_name(program: &Program, node: NodeId) -> String {
     match (program.names.get(&node), program.graph.node(node)) {
-        (Some(name), _) => name,
+        (Some(name), _) => name.clone(),
         (None, Node::Frame(input, _)) => input_name(program, input),
-        (None, _) => "value",
+        (None, _) => "value".to_owned(),
     }
 }
 

@@ -180,7 +180,7 @@ impl<'a> Lowering<'a> {
     /// short as a name.
     pub(super) fn name(&mut self, id: NodeId, node: Node, value: Value) {
         if self.inputs.is_slot(id) {
-            return self.body.name(value, frame_name(self.program, id));
+            return self.body.name(value, &frame_name(self.program, id));
         }
         if matches!(node, Node::Point(..) | Node::Frame(..) | Node::Variable(..)) {
             return;
@@ -212,7 +212,7 @@ impl<'a> Lowering<'a> {
             Node::Point(..) | Node::Sample(..) | Node::MaterialAt(..) => Err(Error::NotFlat(id)),
             Node::Frame(input, _) => {
                 let name = input_name(self.program, input);
-                let value = self.inputs.read_raw(&mut self.body, input, name);
+                let value = self.inputs.read_raw(&mut self.body, input, &name);
                 value.ok_or(Error::UnboundInput(id))
             }
             Node::Unary(op, a) => {

@@ -117,8 +117,7 @@ impl<'a> Checker<'a> {
 
     fn call_name(&mut self, callee: Callee, given: Vec<Given<'a>>) -> Expr {
         let Some(found) = self.look_up(callee.name) else {
-            self.unknown_name(callee.name, callee.at);
-            return self.give_up(given, callee.span);
+            return self.unknown_function(callee, given);
         };
         self.note_use(callee.at, callee.name, &found);
         match found {
@@ -274,6 +273,9 @@ impl<'a> Checker<'a> {
         };
         let found = Diagnostic::error(Code::WRONG_CALL, at, message);
         let found = self.note_hidden(found, called);
+        let own_point = self.body.point.map(types::point);
+        let is_own_point = own_point.is_some() && own_point.as_ref() == given;
+        let found = if is_own_point { self.advise_dimension(dim, found) } else { found };
         self.report(found);
     }
 

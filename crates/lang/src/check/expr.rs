@@ -1,6 +1,7 @@
 //! Expressions: `infer` finds the type of an expression, `check_expr` checks it against one.
 
 use sdfc_diagnostics::{Code, Diagnostic, Span};
+use sdfc_graph::Dim;
 use sdfc_syntax::ast::{self, ExprKind as Ast, Name, Unit};
 
 use super::builtins::FIELDS;
@@ -179,7 +180,9 @@ impl<'a> Checker<'a> {
             (_, Type::Material) => fields_of(FIELDS.iter().map(|(name, ..)| *name), name, found),
             (_, _) => found,
         };
-        self.report(found);
+        let needs_space = *ty == Type::Vec(2) && swizzle(&name.text, 3).is_some();
+        let is_plane = needs_space && self.body.point == Some(Dim::Two);
+        self.report(if is_plane { self.advise_dimension(Dim::Three, found) } else { found });
         poison(span)
     }
 

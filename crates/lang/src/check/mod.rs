@@ -9,6 +9,7 @@
 //! - `names`, `value`: what a name refers to;
 //! - `overload`: which declaration a call refers to;
 //! - `call`, `arguments`: how arguments are assigned to parameters;
+//! - `foreign`: calls of functions with names from other tools;
 //! - `kernel`, `builtins`, `math`, `iterate`: the functions of the kernel;
 //! - `operators`, `list`, `records`, `block`, `lambda`, `expr`: the forms of expressions;
 //! - `types`, `coerce`: which value can be used where;
@@ -31,6 +32,7 @@ mod clauses;
 mod coerce;
 mod decl;
 mod expr;
+mod foreign;
 mod iterate;
 pub(crate) mod kernel;
 mod lambda;
@@ -132,6 +134,7 @@ pub(crate) fn check_items<'a>(
         checker.modules[module].whole = import.whole;
     }
     let module = checker.add_module(&scene.tree.items, Some(""), false);
+    checker.name_params();
     for (import, module) in imports.iter().zip(library.len()..) {
         checker.check_imported(module, &import.tree);
     }
@@ -261,6 +264,17 @@ impl<'a> Checker<'a> {
         }
         checker.program.library = library.iter().map(|(file, _)| *file).collect();
         checker
+    }
+
+    /// Gives imported files with params the prefixes of their params' names.
+    fn name_params(&mut self) {
+        let has_params = |module: &usize| self.params.iter().any(|param| param.module == *module);
+        let path = |module: usize| Some((module, self.modules[module].path?));
+        let files = (0..self.modules.len()).filter(has_params).filter_map(path);
+        let (modules, paths): (Vec<_>, Vec<_>) = files.filter(|(_, path)| !path.is_empty()).unzip();
+        for (module, prefix) in modules.into_iter().zip(import::param_prefixes(&paths)) {
+            self.modules[module].param_prefix = prefix;
+        }
     }
 
     /// Adds a diagnostic. During an attempt it may be discarded later.

@@ -30,6 +30,8 @@ pub(super) enum Entry {
 pub(super) struct Module<'a> {
     /// Its path below the folder of the scene; empty for the scene itself, `None` for the library.
     pub path: Option<&'a str>,
+    /// The prefix of the names of its params; empty for the scene itself.
+    pub param_prefix: String,
     /// True if all of it was parsed.
     pub whole: bool,
     /// Its own top-level names.
@@ -83,7 +85,13 @@ impl<'a> Checker<'a> {
     ) -> usize {
         let module = self.modules.len();
         let (names, imports) = Default::default();
-        self.modules.push(Module { path, whole: true, names, imports });
+        self.modules.push(Module {
+            path,
+            param_prefix: String::new(),
+            whole: true,
+            names,
+            imports,
+        });
         for item in items {
             match item {
                 Item::Decl(decl) => self.add_decl(module, decl),
@@ -251,7 +259,10 @@ impl<'a> Checker<'a> {
             (Some(later), _) => found
                 .note_at(later, "it is declared here and can be used only after this line")
                 .help("move that line above this one"),
-            (None, Some(meant)) => meant.add_to(found),
+            (None, Some(meant)) => {
+                let here = meant.instead.clone();
+                self.call_form(name, &here, meant.add_to(found))
+            }
             (None, None) => found,
         };
         self.report(found);

@@ -12,7 +12,6 @@ use super::names::Found;
 use super::order::Node;
 use super::{Checker, DeclIndex, LetIndex, ParamIndex, State, poison, types};
 use crate::hir::{Expr, ExprKind, Global, GlobalId, Kernel, Lambda, Param, ParamId, Type};
-use crate::import;
 
 impl<'a> Checker<'a> {
     /// Checks a name that is not called.
@@ -303,9 +302,9 @@ impl<'a> Checker<'a> {
             );
             self.report(Diagnostic::error(Code::TYPE_MISMATCH, item.default.span, message));
         }
-        let name = match self.modules[self.body.module].path {
-            Some(path) if !path.is_empty() => format!("{}.{name}", import::stem(path)),
-            _ => name.to_owned(),
+        let name = match self.modules[self.body.module].param_prefix.as_str() {
+            "" => name.to_owned(),
+            prefix => format!("{prefix}.{name}"),
         };
         let (span, docs) = (item.name.span, item.docs.lines.clone());
         Param { name, ty, default, range, choices, span, docs }

@@ -15,6 +15,9 @@ use crate::hir::{Expr, ExprKind, GlobalId, MaterialField};
 const RED_ZONE: usize = 128 * 1024;
 const STACK_SEGMENT: usize = 2 * 1024 * 1024;
 
+/// Lower bound of a coverage that is divided by.
+const LEAST_COVERAGE: f64 = 1e-6;
+
 impl<'p> Elaborator<'p> {
     /// The value of an expression.
     pub(super) fn eval(&mut self, env: &mut Env<'p>, expr: &'p Expr) -> Outcome<Value<'p>> {
@@ -239,9 +242,10 @@ impl<'p> Elaborator<'p> {
                 MaterialField::Color => {
                     let alpha = self.graph.component(value, 3);
                     let over = self.graph.swizzle(value, &[0, 1, 2]);
-                    color = self.mix(color, over, alpha);
                     let one = self.graph.number(1.0);
                     coverage = self.mix(coverage, one, alpha);
+                    let fraction = self.fraction_of(alpha, coverage);
+                    color = self.mix(color, over, fraction);
                 }
                 MaterialField::Roughness => rough = value,
                 MaterialField::Metallic => metal = value,
@@ -250,6 +254,17 @@ impl<'p> Elaborator<'p> {
             }
         }
         Ok(Value::Material([color, coverage, rough, metal, emit, open]))
+    }
+
+    /// The fraction of a colour in what covers a material, as for the operator `over` of Porter and
+    /// Duff: its alpha by the coverage of all colours. A colour over none is all of it.
+    fn fraction_of(&mut self, alpha: NodeId, coverage: NodeId) -> NodeId {
+        if self.graph.as_number(alpha).is_some_and(|alpha| alpha == 0.0 || alpha == 1.0) {
+            return alpha;
+        }
+        let least = self.graph.number(LEAST_COVERAGE);
+        let divisor = self.graph.max(coverage, least);
+        self.graph.div(alpha, divisor)
     }
 
     /// `a + (b - a) * t`; exactly `a` or `b` if t is the constant 0 or 1.

@@ -145,7 +145,8 @@ pub struct Intersect {
 /// A checked `param`.
 #[derive(Clone, Debug)]
 pub struct Param {
-    /// Its name; `file.name` for one of an imported file.
+    /// Its name; `file.name` for one of an imported file, `folder/file.name` if several imported
+    /// files have the same name.
     pub name: String,
     /// Number, Int, Angle, Bool, Color, or Text with choices.
     pub ty: Type,

@@ -63,6 +63,8 @@ class Mesh:
     certificate: dict[str, Any]
     """The proven properties: ``error``, ``is_proven``, ``is_topology_proven``, ``undecided`` and
     more, as ``sdfc mesh --json`` writes them."""
+    left_out: list[str]
+    """The solids without a limit, such as a floor, that the mesh leaves out."""
 
     def __init__(self, handle: Handle) -> None:
         self._handle = handle
@@ -82,6 +84,7 @@ class Mesh:
         self.bounds = _corners(described["bounds"])
         self.shells = described["shells"]
         self.certificate = described["certificate"]
+        self.left_out = described["left_out"]
 
     def save(self, path: PathLike) -> None:
         """Writes a file: .stl, .obj, .ply, .glb or .3mf, by the extension of its name.
@@ -132,6 +135,8 @@ class Contour:
     """The lowest and the highest corner in the plane, of shape (2, 2); None without paths."""
     certificate: dict[str, Any]
     """The proven properties, as ``sdfc contour --json`` writes them."""
+    left_out: list[str]
+    """The solids or regions without a limit that the contour leaves out."""
 
     def __init__(self, handle: Handle) -> None:
         self._handle = handle
@@ -149,6 +154,7 @@ class Contour:
         self.area, self.length = described["area"], described["length"]
         self.bounds = _corners(described["bounds"])
         self.certificate = described["certificate"]
+        self.left_out = described["left_out"]
 
     def save(self, path: PathLike) -> None:
         """Writes a file: .svg or .dxf, by the extension of its name. A scene unit is a millimetre.
