@@ -4,7 +4,12 @@
 //! ```text
 //! SDFC_SOAK_MINUTES=60 cargo test -p sdfc-cli --test lsp_soak -- --nocapture
 //! ```
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test fails by panicking")]
+#![allow(
+    clippy::unwrap_used,
+    clippy::panic,
+    clippy::print_stdout,
+    reason = "a test fails by panicking, and people read the samples"
+)]
 
 mod common;
 #[path = "common/editor.rs"]

@@ -42,17 +42,16 @@ impl Resources {
     pub fn have_not_grown(samples: &[Self]) -> Result<(), String> {
         let Some(end) = samples.last() else { return Ok(()) };
         let half = &samples[..=samples.len() / 2];
-        let rows: [(&str, fn(&Self) -> u64, u64); 3] = [
-            ("threads", |it| it.threads, TRANSIENT),
-            ("open files", |it| it.files, TRANSIENT),
-            ("memory", |it| it.memory, MEMORY_SLACK),
-        ];
-        let has_grown = |(_, of, slack): &&(&str, fn(&Self) -> u64, u64)| {
-            of(end) > half.iter().map(of).max().unwrap_or(0) + slack
+        let most = |of: fn(&Self) -> u64| half.iter().map(of).max().unwrap_or(0);
+        let grown = if end.threads > most(|it| it.threads) + TRANSIENT {
+            "threads"
+        } else if end.files > most(|it| it.files) + TRANSIENT {
+            "open files"
+        } else if end.memory > most(|it| it.memory) + MEMORY_SLACK {
+            "memory"
+        } else {
+            return Ok(());
         };
-        match rows.iter().find(has_grown) {
-            Some((name, ..)) => Err(format!("{name}: {samples:?}")),
-            None => Ok(()),
-        }
+        Err(format!("{grown}: {samples:?}"))
     }
 }
