@@ -5,7 +5,7 @@ use eframe::egui::{FontId, Ui};
 
 use crate::app::theme;
 
-/// The sizes of letters in points. Letters of code look larger than others of the same size.
+/// The sizes of the fonts in points. The font of code looks larger at the same size.
 const TEXT: f32 = 12.5;
 const CODE: f32 = 12.0;
 /// The space between paragraphs in points.
