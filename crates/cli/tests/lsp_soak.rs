@@ -1,5 +1,5 @@
-//! An editor that types into six scenes for a long time, and asks what editors ask. At the end the
-//! server answers as at the start, and its memory, threads and open files have not grown.
+//! An editor that types into six scenes for a long time, and asks what editors ask. The server
+//! draws previews to the end, and its memory, threads and open files have not grown.
 //!
 //! ```text
 //! SDFC_SOAK_MINUTES=60 cargo test -p sdfc-cli --test lsp_soak -- --nocapture

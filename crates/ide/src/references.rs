@@ -39,9 +39,10 @@ pub fn occurrences<'a>(
         .filter(move |it| is_name(analysis.slice(it.span)) && subject(analysis, it) == *wanted)
 }
 
-/// True if a text is a name, not an operator.
-pub fn is_name(text: &str) -> bool {
-    text.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_')
+/// True if a text is a name, not an operator. A name with letters that are errors, such as `é`, is
+/// one too, so that it can be renamed.
+fn is_name(text: &str) -> bool {
+    text.starts_with(|c: char| c.is_alphabetic() || c == '_')
 }
 
 /// Returns the uses of the name at a byte offset of the first scene, in that scene, in its imports

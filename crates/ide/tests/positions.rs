@@ -67,7 +67,9 @@ fn ask_at(scene: &Analysis, offset: usize) {
     selection(scene, offset).iter().for_each(inside);
     let renamable = prepare_rename(scene, offset);
     renamable.iter().for_each(inside);
-    assert_eq!(renamable.is_ok(), rename(scene, &[], offset, "quite_another_name").is_ok());
+    let renamed = rename(scene, &[], offset, "quite_another_name");
+    let (can, did) = (renamable.is_ok(), renamed.is_ok());
+    assert_eq!(can, did, "{renamed:?} at {offset} of {}:\n{text}", scene.name());
     actions(scene, offset..offset);
 }
 
