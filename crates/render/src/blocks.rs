@@ -86,22 +86,17 @@ pub fn uniform_bytes(values: &[[f32; 4]]) -> Vec<u8> {
     bytes.0
 }
 
-/// Reads a pixel block from `PIXEL_BYTES` bytes; missing bytes are read as 0.
-pub fn pixel_from_bytes(bytes: &[u8]) -> PixelBlock {
-    let mut words = bytes.chunks_exact(4).map(|word| match word {
-        &[a, b, c, d] => u32::from_ne_bytes([a, b, c, d]),
-        _ => 0,
-    });
-    let mut word = || words.next().unwrap_or(0);
-    let color = [0; 4].map(|_| f32::from_bits(word()));
-    let (depth, ends) = (f32::from_bits(word()), word());
+/// Reads a pixel block.
+pub fn pixel_from_bytes(bytes: &[u8; PIXEL_BYTES]) -> PixelBlock {
+    let (words, _) = bytes.as_chunks();
+    let word = |index: usize| u32::from_ne_bytes(words[index]);
     PixelBlock {
-        color,
-        depth,
-        status: ends as u16,
-        unproven: (ends >> 16) as u16,
-        evaluations: word(),
-        primary_evaluations: word(),
+        color: [0, 1, 2, 3].map(|index| f32::from_bits(word(index))),
+        depth: f32::from_bits(word(4)),
+        status: word(5) as u16,
+        unproven: (word(5) >> 16) as u16,
+        evaluations: word(6),
+        primary_evaluations: word(7),
     }
 }
 
@@ -173,6 +168,6 @@ mod tests {
         let mut bytes = Bytes::default();
         bytes.floats(&pixel.color).floats(&[pixel.depth]);
         bytes.words(&[0x10002, pixel.evaluations, pixel.primary_evaluations]);
-        assert_eq!(pixel_from_bytes(&bytes.0), pixel);
+        assert_eq!(bytes.0.first_chunk().map(pixel_from_bytes), Some(pixel));
     }
 }

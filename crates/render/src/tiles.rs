@@ -80,8 +80,9 @@ impl Default for TileSize {
 /// Pixels of the first adaptive tile: a third of a second at 5 ms a pixel, as a software adapter
 /// takes for thousands of primitives.
 const FIRST_PIXELS: u32 = 64;
-/// The maximum rows of an adaptive tile: a band that starts in an empty sky keeps its height where
-/// it reaches something costly, but its tiles can still become narrow.
+/// The maximum rows of an adaptive tile if nothing is known of the cost: a band that starts in an
+/// empty sky keeps its height where it reaches something costly, but its tiles can still become
+/// narrow.
 const MAX_ROWS: u32 = 64;
 /// Columns and rows are multiples of this, a workgroup's side, except at the border.
 const STEP: u32 = 8;
@@ -104,6 +105,8 @@ pub(crate) struct Tiler {
     /// The target number of pixels of an adaptive tile, and its maximum.
     wanted: u32,
     most: u32,
+    /// The maximum rows of an adaptive tile.
+    max_rows: u32,
     next: [u32; 2],
     band: u32,
 }
@@ -114,7 +117,7 @@ impl Tiler {
         let most = most.max(STEP * STEP);
         let wanted = FIRST_PIXELS.min(most);
         let region = region.aligned(picture);
-        Self { region, tile_size, wanted, most, next: [0, 0], band: 0 }
+        Self { region, tile_size, wanted, most, max_rows: MAX_ROWS, next: [0, 0], band: 0 }
     }
 
     /// The number of pixels of all tiles.
@@ -125,6 +128,19 @@ impl Tiler {
     /// The same tiles, the first of which has this many pixels if they adapt.
     pub(crate) fn starting_with(self, pixels: u32) -> Self {
         Self { wanted: pixels.min(self.most), ..self }
+    }
+
+    /// The same tiles, larger from the start if they adapt: a pixel is expected to take this many
+    /// milliseconds, as in the last frame. The first tile takes a quarter of the time that a tile
+    /// should take, and the narrowest one of a band a sixteenth, in case that this frame is slower.
+    pub(crate) fn after(self, cost: Option<f64>) -> Self {
+        let (TileSize::Adaptive { milliseconds }, Some(cost)) = (self.tile_size, cost) else {
+            return self;
+        };
+        let fitting = milliseconds / cost.max(1e-9);
+        let wanted = ((fitting / GROWTH) as u32).clamp(self.wanted, self.most);
+        let rows = (fitting / SHRINKAGE) as u32 / STEP;
+        Self { wanted, max_rows: rows.max(MAX_ROWS), ..self }
     }
 
     /// The next tile.
@@ -149,7 +165,7 @@ impl Tiler {
             TileSize::Adaptive { .. } => {
                 // As square as the picture allows.
                 let width = (self.wanted.isqrt()).min(self.region.size[0]).max(1);
-                multiple(self.wanted / width).min(MAX_ROWS)
+                multiple(self.wanted / width).min(self.max_rows)
             }
             TileSize::Fixed([width, height]) => height.min(self.most / width.clamp(1, self.most)),
         }
@@ -222,6 +238,26 @@ mod tests {
         assert!(fast.len() < 60, "{} tiles", fast.len());
         let slow = cover([256, 256], TileSize::default(), 1 << 20, |pixels| pixels as f64 * 0.5);
         assert!(slow.iter().all(|tile| tile.pixels() <= 128));
+    }
+
+    #[test]
+    fn a_frame_begins_with_the_tiles_that_the_last_one_allows() {
+        let tiles = |picture, cost: f64| {
+            let mut tiler = Tiler::new(picture, Tile::whole(picture), TileSize::default(), 1 << 21);
+            tiler = tiler.after(Some(cost));
+            std::iter::from_fn(|| {
+                let tile = tiler.next()?;
+                tiler.took(tile, cost * tile.pixels() as f64);
+                Some(tile)
+            })
+            .collect::<Vec<_>>()
+        };
+        let whole = |picture| vec![Tile::whole(picture)];
+        assert_eq!(tiles([1920, 1080], 1e-6), whole([1920, 1080]));
+        // 60 ms are 6,000 pixels, and the first tile has a quarter of them.
+        let slow = tiles([1920, 1080], 1e-2);
+        assert_eq!(slow[0].size, [38 / STEP * STEP + STEP, 32].map(|side: u32| side));
+        assert!(slow.iter().all(|tile| tile.size[1] <= MAX_ROWS && tile.pixels() <= 6000));
     }
 
     #[test]

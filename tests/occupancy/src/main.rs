@@ -3,12 +3,13 @@
 //! Mesa's RADV compiles shaders for AMD chips that the machine does not have, and reports what its
 //! compiler made of them. Without RADV the tests are reported as ignored, unless `SDFC_REQUIRE_GPU`
 //! is 1. After a change of the emitted shaders, `GPU_UPDATE=1 cargo test -p sdfc-occupancy` writes
-//! the table again.
+//! the table again. `GPU_STATISTICS=1` prints what the driver of this machine reports instead.
 
 #![allow(clippy::print_stdout, reason = "a run of the driver prints what it found")]
 
 mod driver;
 mod field;
+mod native;
 mod radv;
 mod table;
 
@@ -23,6 +24,8 @@ use crate::table::{Part, Row, Table};
 /// The environment variable with scenes, separated by spaces, whose times to compile are printed
 /// instead of a test. Paths are relative to the repository.
 const TIMES: &str = "GPU_TIMES";
+/// The environment variable that makes this program print what the driver of this machine reports.
+const STATISTICS: &str = "GPU_STATISTICS";
 /// The number of runs of which the shortest counts.
 const RUNS: usize = 5;
 
@@ -30,16 +33,21 @@ fn main() {
     if let Some(folder) = std::env::var_os(radv::SHADERS) {
         return radv::print_statistics(&folder);
     }
+    if std::env::var_os(STATISTICS).is_some() {
+        return native::print_statistics().unwrap_or_else(give_up);
+    }
     if let Ok(scenes) = std::env::var(TIMES) {
-        return print_times(&scenes).unwrap_or_else(|error| {
-            println!("{}", error.message().unwrap_or_default());
-            std::process::exit(1);
-        });
+        return print_times(&scenes).unwrap_or_else(give_up);
     }
     let is_required = std::env::var_os("SDFC_REQUIRE_GPU").is_some_and(|value| value == "1");
     let is_ignored = !is_required && radv::manifest().is_none();
     let trial = Trial::test("no_example_takes_more_of_a_gpu_than_the_tables_say", check);
     libtest_mimic::run(&Arguments::from_args(), vec![trial.with_ignored_flag(is_ignored)]).exit();
+}
+
+fn give_up(error: Failed) {
+    println!("{}", error.message().unwrap_or_default());
+    std::process::exit(1);
 }
 
 fn check() -> Result<(), Failed> {

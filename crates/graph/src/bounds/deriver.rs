@@ -4,6 +4,7 @@ use rustc_hash::FxHashMap;
 
 use super::zone::Zone;
 use crate::blend::Blends;
+use crate::eval::scalarise::Lanes;
 use crate::eval::{FrameValues, Interval, Number, direct};
 use crate::expand::Expander;
 use crate::graph::Graph;
@@ -36,6 +37,7 @@ pub(super) struct Memo {
     pub(super) tightened: FxHashMap<ShapeId, Zone>,
     pub(super) queries: FxHashMap<Query, Zone>,
     pub(super) exact: FxHashMap<ShapeId, bool>,
+    pub(super) ranges: FxHashMap<NodeId, Lanes<Interval>>,
     pub(super) expander: Expander,
     pub(super) blends: Blends,
 }
@@ -69,19 +71,23 @@ impl Deriver<'_> {
     }
 
     /// The values that a scalar or truth value can have at any point.
-    pub(super) fn range(&self, node: NodeId) -> Interval {
+    pub(super) fn range(&mut self, node: NodeId) -> Interval {
         if let Some(number) = self.graph.as_number(node) {
             return Interval::constant(number);
         }
+        // The ends of a long chain share most of their terms.
+        let mut known = std::mem::take(&mut self.memo.ranges);
         let graph = &*self.graph;
         let order = reachable_where(graph, &[node], |id| {
-            !matches!(graph.node(id), Node::Sample(..) | Node::Loop(..))
+            !known.contains_key(&id) && !matches!(graph.node(id), Node::Sample(..) | Node::Loop(..))
         });
-        direct::evaluate(graph, &order, |id| self.input(id))
+        let range = direct::evaluate(graph, &order, &mut known, |id| self.input(id));
+        self.memo.ranges = known;
+        range
     }
 
     /// True if a condition holds for all values of the params.
-    pub(super) fn is_true(&self, condition: NodeId) -> bool {
+    pub(super) fn is_true(&mut self, condition: NodeId) -> bool {
         self.range(condition).lo() > 0.0
     }
 

@@ -44,7 +44,8 @@ impl Deriver<'_> {
         let Shape { formula: node, level, dim, .. } = *self.graph.shape(shape);
         let query = Query { node, limit, level, dim, above: false };
         let samples = Some(self.samples(node)).filter(|samples| !samples.is_empty())?;
-        self.threshold(&self.operator(query, samples)?, |_| true)
+        let operator = self.operator(query, samples)?;
+        self.threshold(&operator, |_| true)
     }
 
     fn samples(&self, formula: NodeId) -> Vec<NodeId> {
@@ -54,7 +55,7 @@ impl Deriver<'_> {
         order.into_iter().filter(|&id| is_sample(id)).collect()
     }
 
-    fn operator(&self, query: Query, samples: Vec<NodeId>) -> Option<Operator> {
+    fn operator(&mut self, query: Query, samples: Vec<NodeId>) -> Option<Operator> {
         let limit = self.range(query.limit);
         let first = self.ranges.params.len() as u32;
         let tape = Tape::for_operator(self.graph, query.node, &samples, first).ok()?;

@@ -74,13 +74,13 @@ impl Deriver<'_> {
     }
 
     /// True if the box has an end on each axis of the shape.
-    fn is_closed(&self, shape: ShapeId, zone: Zone) -> bool {
+    fn is_closed(&mut self, shape: ShapeId, zone: Zone) -> bool {
         let width = self.graph.shape(shape).dim.point_type().width();
         self.region(zone)[..width].iter().flatten().all(|end| end.is_finite())
     }
 
     /// The box for all values of the params.
-    fn region(&self, zone: Zone) -> Region {
+    fn region(&mut self, zone: Zone) -> Region {
         zone.axes.map(|[lo, hi]| [self.range(lo).lo(), self.range(hi).hi()])
     }
 

@@ -38,22 +38,26 @@ impl<N: Number, F: FnMut(NodeId) -> [N; 4]> ScalarBackend for Direct<N, F> {
 
 /// Evaluates the last node of `order` and returns its first lane. `order` lists the nodes that it
 /// is computed from, arguments first. `input` gives the lanes of points, per-frame inputs and
-/// samples.
+/// samples. `known` has the values of nodes that were computed before, and gets those of the
+/// others.
 pub(crate) fn evaluate<N: Number>(
     graph: &Graph,
     order: &[NodeId],
+    known: &mut FxHashMap<NodeId, Lanes<N>>,
     input: impl FnMut(NodeId) -> [N; 4],
 ) -> N {
     let zero = Lanes::scalar(N::constant(0.0));
     let Some(&last) = order.last() else { return zero.get(0) };
     let mut backend = Direct { input, current: last, number: std::marker::PhantomData };
-    let mut values: FxHashMap<NodeId, Lanes<N>> = FxHashMap::default();
     for &id in order {
+        if known.contains_key(&id) {
+            continue;
+        }
         backend.current = id;
         let value = scalarise(&mut backend, &graph.node(id), |argument| {
-            values.get(&argument).copied().unwrap_or(zero)
+            known.get(&argument).copied().unwrap_or(zero)
         });
-        values.insert(id, value.unwrap_or(zero));
+        known.insert(id, value.unwrap_or(zero));
     }
-    values.get(&last).unwrap_or(&zero).get(0)
+    known.get(&last).unwrap_or(&zero).get(0)
 }

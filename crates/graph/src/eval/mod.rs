@@ -52,7 +52,7 @@ mod packet;
 mod record;
 mod registers;
 mod sample;
-mod scalarise;
+pub(crate) mod scalarise;
 mod specialize;
 mod tape;
 mod tracer;

@@ -283,7 +283,7 @@ impl CpuScene {
                 let mut rest = drawn.as_slice();
                 for group in groups {
                     let (pixels, others) = rest.split_at(group.pixels().min(rest.len()));
-                    image.put(region.origin, group, pixels);
+                    image.put(region.origin, group, pixels, |pixel| *pixel);
                     rest = others;
                 }
             }

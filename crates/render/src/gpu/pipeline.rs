@@ -16,16 +16,24 @@ use crate::image::Image;
 use crate::tiles::{Tile, TileSize, Tiler};
 use crate::view::View;
 
-/// The maximum number of pixels of a tile: 32 MiB to read back.
-const MAX_TILE_PIXELS: u32 = 1 << 20;
+/// The maximum number of pixels of a tile: a picture of 1920x1080 fits, and 64 MiB are read back.
+const MAX_TILE_PIXELS: u32 = 1 << 21;
+
 /// A picture shader, compiled for a device.
 #[derive(Debug)]
 pub struct Pipeline {
     kernel: Kernel,
     uniform_count: usize,
     milliseconds: f64,
-    /// The buffers of the last frame, if the next one can use their contents.
-    buffers: Mutex<Option<Buffers>>,
+    last: Mutex<Option<LastFrame>>,
+}
+
+/// What the next frame can use of the last one.
+#[derive(Debug)]
+struct LastFrame {
+    buffers: Buffers,
+    /// Milliseconds per pixel.
+    cost: f64,
 }
 
 impl Pipeline {
@@ -108,8 +116,8 @@ impl Pipeline {
             (pipeline, layout, culling.map(|made| Culling::new(gpu, made, uniform_count)))
         })?;
         let kernel = Kernel { gpu: gpu.clone(), pipeline, layout, tables, culling };
-        let buffers = Mutex::default();
-        let mut ready = Self { kernel, uniform_count, milliseconds: 0.0, buffers };
+        let last = Mutex::default();
+        let mut ready = Self { kernel, uniform_count, milliseconds: 0.0, last };
         ready.dispatch_once()?;
         ready.milliseconds = milliseconds_since(start);
         Ok(ready)
@@ -137,7 +145,7 @@ impl Pipeline {
             kernel: Kernel { tables, culling, ..self.kernel.clone() },
             uniform_count: self.uniform_count,
             milliseconds: self.milliseconds,
-            buffers: Mutex::default(),
+            last: Mutex::default(),
         })
     }
 
@@ -216,38 +224,42 @@ impl Pipeline {
             let (given, expected) = (uniforms.len(), self.uniform_count);
             return Err(RenderError::UniformCount { given, expected });
         }
-        let mut tiler = Tiler::new(view.size, region, tile_size, self.max_tile_pixels());
+        let (buffers, cost) =
+            self.take_last().map_or((None, None), |it| (Some(it.buffers), Some(it.cost)));
+        let most = self.max_tile_pixels();
+        let mut tiler = Tiler::new(view.size, region, tile_size, most).after(cost);
         let moment = Moment { uniforms: uniforms.to_vec(), within: view.within };
-        let mut run = Run::new(&self.kernel, self.take_buffers(), moment)?;
-        let (mut milliseconds, mut tiles, mut done) = (0.0, 0, 0);
-        let total = tiler.pixels();
-        while let Some(tile) = tiler.next() {
+        let mut run = Run::new(&self.kernel, buffers, moment)?;
+        let (mut milliseconds, mut waited, mut tiles, mut done) = (0.0, 0.0, 0, 0);
+        let (total, mut cancelled) = (tiler.pixels(), false);
+        while !cancelled && let Some(tile) = tiler.next() {
             let start = Instant::now();
             let gpu_time = draw(&mut run, tile)?;
             let elapsed = milliseconds_since(start);
             tiler.took(tile, elapsed);
             milliseconds += gpu_time.unwrap_or(elapsed);
+            waited += elapsed;
             tiles += 1;
             done += tile.pixels() as u64;
-            if progress(Progress { done, total }).is_break() {
-                return Err(RenderError::Cancelled);
-            }
+            cancelled = progress(Progress { done, total }).is_break();
         }
         let culling_evaluations = run.culling_evaluations();
-        if self.kernel.culling.is_some() {
-            self.store_buffers(run.into_buffers());
+        let cost = waited / done.max(1) as f64;
+        self.store_last(LastFrame { buffers: run.into_buffers(), cost });
+        if cancelled {
+            return Err(RenderError::Cancelled);
         }
         Ok(DrawnTiles { milliseconds, tiles, culling_evaluations })
     }
 
-    /// Takes the buffers of the last frame, unless another frame is being drawn with them.
-    fn take_buffers(&self) -> Option<Buffers> {
-        self.buffers.lock().ok()?.take()
+    /// Takes what is left of the last frame, unless another frame is being drawn with it.
+    fn take_last(&self) -> Option<LastFrame> {
+        self.last.lock().ok()?.take()
     }
 
-    fn store_buffers(&self, buffers: Buffers) {
-        if let Ok(mut stored) = self.buffers.lock() {
-            *stored = Some(buffers);
+    fn store_last(&self, frame: LastFrame) {
+        if let Ok(mut last) = self.last.lock() {
+            *last = Some(frame);
         }
     }
 

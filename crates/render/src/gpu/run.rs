@@ -313,8 +313,7 @@ impl<'a> Run<'a> {
             let count = count.try_into().map_or(0, u32::from_ne_bytes);
             self.culling_evaluations = self.culling_evaluations.saturating_add(count);
         }
-        let pixels: Vec<_> = pixels.chunks_exact(PIXEL_BYTES).map(pixel_from_bytes).collect();
-        image.put(origin, tile, &pixels);
+        image.put(origin, tile, pixels.as_chunks().0, pixel_from_bytes);
         let time =
             self.buffers.timestamps.as_ref().map(|timestamps| timestamps.milliseconds(times));
         drop(mapped);

@@ -106,16 +106,26 @@ impl Image {
         (x < width && y < height).then(|| self.pixels.get(index)).flatten()
     }
 
-    /// Writes the pixels of a tile, given row by row. `origin` is the position of this picture in
-    /// the whole one, which the tile is relative to; pixels outside of this picture are left out.
-    pub(crate) fn put(&mut self, origin: [u32; 2], tile: Tile, pixels: &[PixelBlock]) {
+    /// Writes the pixels of a tile, given row by row in a form that `block` reads. `origin` is the
+    /// position of this picture in the whole one, which the tile is relative to; pixels outside of
+    /// this picture are left out.
+    pub(crate) fn put<T>(
+        &mut self,
+        origin: [u32; 2],
+        tile: Tile,
+        pixels: &[T],
+        block: impl Fn(&T) -> PixelBlock,
+    ) {
         let [columns, rows] = [0, 1].map(|axis| overlap(origin[axis], self.size[axis], tile, axis));
         let (width, tile_width) = (self.size[0] as usize, tile.size[0] as usize);
         let drawn = pixels.chunks_exact(tile_width.max(1)).skip(rows.skipped);
         let shown = self.pixels.chunks_exact_mut(width).skip(rows.first).take(rows.count);
         for (to, from) in shown.zip(drawn) {
             let from = &from[columns.skipped..columns.skipped + columns.count];
-            to[columns.first..columns.first + columns.count].copy_from_slice(from);
+            let to = &mut to[columns.first..columns.first + columns.count];
+            for (to, from) in to.iter_mut().zip(from) {
+                *to = block(from);
+            }
         }
     }
 
