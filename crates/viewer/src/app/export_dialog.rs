@@ -1,5 +1,6 @@
 //! The export dialog: a picture, an animation, a shader, or a screenshot of the window.
 
+use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 
 use eframe::egui::{self, Context, RichText, Ui};
@@ -13,6 +14,8 @@ use crate::session::Session;
 
 /// The duration of each frame of an animation, in hundredths of a second.
 const HUNDREDTHS: u32 = 4;
+/// The shortest and the longest animation, in seconds.
+const SECONDS: RangeInclusive<f64> = 0.04..=600.0;
 
 /// The kind of file that is exported.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -58,7 +61,8 @@ pub struct ExportDialog {
     picture: PictureSize,
     /// Smaller, because an animation has many pictures.
     animation: PictureSize,
-    seconds: f64,
+    /// The length of an animation in seconds, if the user gives another one than the clock's end.
+    seconds: Option<f64>,
     /// An existing file that the user was asked about and that may be replaced if asked again.
     replaces: Option<PathBuf>,
     /// True until the file's name has the keyboard.
@@ -78,7 +82,7 @@ impl Default for ExportDialog {
             scene: PathBuf::new(),
             picture: PictureSize { size: [1920, 1080], samples: 16 },
             animation: PictureSize { size: [640, 360], samples: 4 },
-            seconds: 0.0,
+            seconds: None,
             replaces: None,
             was_opened: true,
             target: Target::Wgsl,
@@ -98,7 +102,7 @@ impl ExportDialog {
         if *open && self.scene != session.path() {
             self.scene = session.path().to_owned();
             self.path = self.proposed();
-            self.seconds = session.clock.end;
+            self.seconds = None;
         }
         self.was_opened |= !*open;
         let mut stays_open = *open;
@@ -122,11 +126,17 @@ impl ExportDialog {
             ExportKind::Picture => picture_size(ui, &mut self.picture),
             ExportKind::Animation => {
                 picture_size(ui, &mut self.animation);
-                let drag = number_drag(&mut self.seconds).range(0.04..=600.0).speed(0.05);
+                let before = self.length(session);
+                let mut seconds = before;
+                let drag = number_drag(&mut seconds).range(SECONDS).speed(0.05);
                 labelled(ui, "length", |ui| {
-                    ui.add(drag.suffix(" s"))
-                        .on_hover_text("In seconds from time 0, with 25 frames per second.");
+                    let help = "In seconds from time 0, with 25 frames per second. It is the end \
+                                of the clock unless you change it.";
+                    ui.add(drag.suffix(" s")).on_hover_text(help);
                 });
+                if seconds != before {
+                    self.seconds = Some(seconds);
+                }
             }
             ExportKind::Shader => self.shader(ui),
             ExportKind::Screenshot => {}
@@ -166,6 +176,11 @@ impl ExportDialog {
             };
             ui.label(RichText::new(text).small().color(theme::of(ui).warning));
         });
+    }
+
+    /// The length of an animation in seconds.
+    fn length(&self, session: &Session) -> f64 {
+        self.seconds.unwrap_or(session.clock.end.clamp(*SECONDS.start(), *SECONDS.end()))
     }
 
     fn shader(&mut self, ui: &mut Ui) {
@@ -262,7 +277,7 @@ impl ExportDialog {
         let Some(model) = &session.model else { return };
         let frames = match self.kind {
             ExportKind::Picture => vec![session.values(model)],
-            ExportKind::Animation => session.frames(model, self.seconds, HUNDREDTHS),
+            ExportKind::Animation => session.frames(model, self.length(session), HUNDREDTHS),
             ExportKind::Shader => {
                 let (scene, source) =
                     (self.scene.clone(), session.param_values.source_with_values(&model.source));

@@ -46,12 +46,17 @@ const ROWS: [(&str, &str); 28] = [
     ("Ctrl + Q", "close the window"),
 ];
 
+/// The room that the list needs, in points. egui shows a window whose size it does not know cut off
+/// until the next frame, which may be long after.
+const SIZE: [f32; 2] = [580.0, 760.0];
+
 /// Shows the list if it is open.
 pub fn show(ctx: &Context, open: &mut bool) {
     let window = egui::Window::new("Keys and mouse")
         .open(open)
         .resizable(false)
         .collapsible(false)
+        .default_size(SIZE)
         .vscroll(true);
     window.anchor(egui::Align2::CENTER_CENTER, [0.0, 0.0]).show(ctx, |ui| {
         egui::Grid::new("keys").num_columns(2).spacing([24.0, 6.0]).show(ui, |ui| {

@@ -55,10 +55,12 @@ impl CompileWorker {
 
 #[cfg(test)]
 mod tests {
+    use sdfc_graph::{Program, reachable};
+
     use crate::compile::diagnostics::SceneDiagnostics;
     use crate::compile::request::{BuildRequest, CompileEvent};
     use crate::test_support::{
-        expect_compiled, expect_model, next_event, on_cpu, ready_model, start_worker,
+        expect_compiled, expect_model, model, next_event, on_cpu, ready_model, start_worker,
     };
 
     #[test]
@@ -161,6 +163,25 @@ mod tests {
         assert!(after[0] > 2 && after[1] == 402, "{after:?}");
         // An edit of a live literal that makes the source longer.
         assert_eq!(moving("0.1255"), after);
+    }
+
+    /// A driver compiles all nodes: with unrolled materials it takes minutes and gigabytes.
+    #[test]
+    fn a_scene_of_many_coloured_parts_has_as_few_nodes_as_one_of_some() {
+        let nodes = |parts| {
+            let part = |at: usize| {
+                let kind = ["sphere(0.1)", "box(0.1)", "cylinder(0.1, 0.2)"][at % 3];
+                let [x, y, z] = [at % 10, at / 10 % 10, at / 100];
+                format!("{kind}.translate([{x}, {y}, {z}.5]).color(#{:06x})\n", 7 * at + 1)
+            };
+            let model = model(&(0..parts).map(part).collect::<String>());
+            let Program { graph, distance, material, .. } = model.marched();
+            let roots: Vec<_> = distance.iter().chain(material.iter().flatten()).copied().collect();
+            assert!(material.is_some());
+            reachable(graph, &roots).len()
+        };
+        let [some, many] = [400, 1000].map(nodes);
+        assert!(some < 500 && many <= some + some / 10, "{some} nodes, then {many}");
     }
 
     #[test]

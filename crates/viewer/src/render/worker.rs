@@ -417,6 +417,8 @@ fn picture(drawn: &DrawnImage, colored: &ColoredView, started: Instant) -> Rende
 
 #[cfg(test)]
 mod tests {
+    use std::sync::mpsc::{Receiver, channel};
+
     use super::*;
     use crate::test_support::{TIMEOUT, model};
 
@@ -431,14 +433,13 @@ mod tests {
         format!("union({}, blend: smooth(0.05))\n{camera}\n", balls.join(",\n"))
     }
 
-    #[test]
-    fn a_slow_view_is_shown_coarsely_first_and_interrupted_by_the_next_one() {
+    fn slow_request(size: [u32; 2]) -> RenderRequest {
         let model = model(&slow_scene());
         let frame = model.defaults();
-        let request = RenderRequest {
+        RenderRequest {
             pose: model.scene.pose(&frame, 1.5).unwrap(),
             frame,
-            size: [480, 320],
+            size,
             mode: ViewMode::Shaded,
             slice: Default::default(),
             moving: true,
@@ -446,14 +447,23 @@ mod tests {
             samples: 1,
             tolerance: 1.0,
             model,
-        };
-        let (sender, events) = std::sync::mpsc::channel();
-        let worker = RenderWorker::new(sender, || {}).unwrap();
-        let next = || match events.recv_timeout(TIMEOUT).unwrap() {
+        }
+    }
+
+    fn next_picture(events: &Receiver<RenderEvent>) -> Box<Picture> {
+        match events.recv_timeout(TIMEOUT).unwrap() {
             RenderEvent::Picture(picture) => picture,
             RenderEvent::Failed { message, .. } => panic!("{message}"),
             RenderEvent::Moving(_) => panic!("there is no window"),
-        };
+        }
+    }
+
+    #[test]
+    fn a_slow_view_is_shown_coarsely_first_and_interrupted_by_the_next_one() {
+        let request = slow_request([480, 320]);
+        let (sender, events) = channel();
+        let worker = RenderWorker::new(sender, || {}).unwrap();
+        let next = || next_picture(&events);
         worker.send(request.clone());
         assert_eq!((next().stride, next_is_none(&events)), (1, true));
         // The same rays: nothing is drawn again, few pixels are computed.
@@ -474,7 +484,25 @@ mod tests {
         assert_eq!(other.unwrap().divisor, finer.divisor);
     }
 
-    fn next_is_none(events: &std::sync::mpsc::Receiver<RenderEvent>) -> bool {
+    #[test]
+    fn a_view_of_a_finished_picture_is_interrupted_by_the_next_one() {
+        let request = RenderRequest { moving: false, ..slow_request([360, 240]) };
+        let (sender, events) = channel();
+        let worker = RenderWorker::new(sender, || {}).unwrap();
+        let mut pictures = std::iter::repeat_with(|| next_picture(&events));
+        worker.send(request.clone());
+        pictures.find(|it| it.finished).unwrap();
+        // All rays are known: only the view is computed.
+        worker.send(RenderRequest { mode: ViewMode::Normals, ..request.clone() });
+        let coarse = pictures.next().unwrap();
+        assert_eq!((coarse.request.mode, coarse.stride > 2), (ViewMode::Normals, true));
+        worker.send(RenderRequest { mode: ViewMode::GradientLength, ..request });
+        let finest = pictures.take_while(|it| it.request.mode == ViewMode::Normals);
+        let finest = finest.map(|it| it.stride).min();
+        assert!(finest.is_none_or(|stride| stride > 1), "{finest:?}");
+    }
+
+    fn next_is_none(events: &Receiver<RenderEvent>) -> bool {
         events.recv_timeout(Duration::from_millis(100)).is_err()
     }
 }

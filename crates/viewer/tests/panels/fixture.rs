@@ -3,7 +3,9 @@
 use std::time::{Duration, Instant};
 
 use eframe::egui::accesskit::Role;
-use eframe::egui::{Context, Key, Modifiers, ViewportCommand, ViewportEvent, ViewportId};
+use eframe::egui::{
+    Context, Key, Modifiers, Rect, Shape, TextureId, ViewportCommand, ViewportEvent, ViewportId,
+};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{Queryable, by};
 use sdfc_viewer::app::App;
@@ -16,6 +18,14 @@ pub const CTRL: Modifiers = Modifiers { ctrl: true, ..Modifiers::COMMAND };
 
 pub const SCENE: &str = "/// How thick the wall is.\nparam wall = 0.1 in 0.05..0.5\nsphere(1) - sphere(1 - wall)\n\
                      camera(eye: [0, 0, 5], target: [0, 0, 0], fov: 40deg)\n";
+
+/// A text that the last frame drew.
+pub struct DrawnText {
+    pub text: String,
+    pub rect: Rect,
+    /// The part of it that is seen.
+    pub seen: Rect,
+}
 
 pub struct Fixture {
     pub harness: Harness<'static, App>,
@@ -139,5 +149,53 @@ impl Fixture {
 
     pub fn has(&self, text: &str) -> bool {
         self.harness.query_all_by_label_contains(text).next().is_some()
+    }
+
+    /// The texts that the last frame drew, if some of them is seen.
+    pub fn drawn_texts(&self) -> Vec<DrawnText> {
+        let mut texts = Vec::new();
+        let mut add = |shape: &Shape, clip: Rect| {
+            if let Shape::Text(text) = shape {
+                let rect = text.visual_bounding_rect();
+                let seen = rect.intersect(clip);
+                if seen.is_positive() {
+                    texts.push(DrawnText { text: text.galley.text().to_owned(), rect, seen });
+                }
+            }
+        };
+        self.for_each_shape(&mut add);
+        texts
+    }
+
+    /// Returns true if the last frame drew a text, also one without a widget.
+    pub fn draws_text(&self, text: &str) -> bool {
+        self.drawn_texts().iter().any(|drawn| drawn.text == text)
+    }
+
+    /// Where the last frame drew the picture.
+    pub fn drawn_picture(&self) -> Option<Rect> {
+        let mut found = None;
+        let mut find = |shape: &Shape, _: Rect| {
+            if let Shape::Mesh(mesh) = shape
+                && mesh.texture_id != TextureId::default()
+            {
+                found = Some(mesh.calc_bounds());
+            }
+        };
+        self.for_each_shape(&mut find);
+        found
+    }
+
+    /// Visits the shapes of the last frame, each with the rectangle that it is clipped to.
+    fn for_each_shape(&self, visit: &mut dyn FnMut(&Shape, Rect)) {
+        fn nested(shape: &Shape, clip: Rect, visit: &mut dyn FnMut(&Shape, Rect)) {
+            if let Shape::Vec(shapes) = shape {
+                shapes.iter().for_each(|shape| nested(shape, clip, visit));
+            } else {
+                visit(shape, clip);
+            }
+        }
+        let shapes = &self.harness.output().shapes;
+        shapes.iter().for_each(|it| nested(&it.shape, it.clip_rect, visit));
     }
 }

@@ -2,37 +2,32 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+mod camera;
 mod commands;
 mod find;
 mod fixture;
 mod handles;
+mod layout;
 mod lit_shapes;
 mod tabs;
 mod unsaved;
 
 use std::collections::BTreeSet;
+use std::fs::File;
+use std::io::BufReader;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use eframe::egui::accesskit::Role;
-use eframe::egui::{Context, DroppedFile, Key, Modifiers, ViewportId};
+use eframe::egui::{Context, DroppedFile, Event, Key, Modifiers, ViewportId};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use fixture::{Fixture, SCENE, TIMEOUT};
+use image::AnimationDecoder;
+use image::codecs::gif::GifDecoder;
 use sdfc_viewer::app::App;
 use sdfc_viewer::views::mode::ViewMode;
-
-#[test]
-fn the_camera_follows_the_scene_until_it_is_moved() {
-    let mut fixture = Fixture::new();
-    assert!(fixture.has("wall"));
-    assert!(fixture.harness.state_mut().session().follows_scene());
-    fixture.click("Top");
-    assert!(!fixture.harness.state_mut().session().follows_scene());
-    fixture.click("Reset camera");
-    assert!(fixture.harness.state_mut().session().follows_scene());
-}
 
 #[test]
 fn errors_are_shown_as_on_the_command_line_and_disappear_when_fixed() {
@@ -158,6 +153,20 @@ fn opening_another_scene_asks_before_changed_numbers_are_lost() {
 }
 
 #[test]
+fn the_menu_of_scenes_asks_before_changed_numbers_are_lost() {
+    let mut fixture = Fixture::new();
+    std::fs::write(fixture.folder.path().join("other.sdf"), "sphere(2)\n").unwrap();
+    fixture.change_a_number();
+    fixture.click("scene.sdf");
+    fixture.click("In this folder");
+    fixture.click("other.sdf");
+    assert!(fixture.has("1 changed number is not saved"));
+    assert!(fixture.harness.state().opened().path().ends_with("scene.sdf"));
+    fixture.click("Open without saving");
+    assert!(fixture.harness.state().opened().path().ends_with("other.sdf"));
+}
+
+#[test]
 fn params_are_saved_as_defaults() {
     let mut fixture = Fixture::new();
     let changed = [0.4, 0.0, 0.0, 0.0];
@@ -187,6 +196,30 @@ fn a_picture_and_a_shader_are_saved_beside_the_scene() {
     fixture.harness.get_all_by_label("Save").last().unwrap().click();
     fixture.until(|_| shader.exists());
     assert!(std::fs::read_to_string(&shader).unwrap().contains("fn sdf_distance"));
+}
+
+#[test]
+fn an_animation_lasts_until_the_end_of_the_clock_unless_another_length_is_given() {
+    let mut fixture = Fixture::of("sphere(1 + 0.1 * sin(time))\n");
+    let path = fixture.folder.path().join("scene.gif");
+    fixture.click("Export");
+    fixture.click("Animation");
+    assert!(fixture.harness.query_by_value("10 s").is_some());
+    // An animation has many pictures: they are small, unless the user wants other ones.
+    for side in ["640", "360"] {
+        assert!(fixture.harness.query_by_value(side).is_some(), "{side}");
+    }
+    fixture.harness.state_mut().session().clock.end = 0.12;
+    fixture.harness.run_steps(2);
+    fixture.harness.get_all_by_label("Save").last().unwrap().click();
+    fixture.until(|_| path.exists());
+    let decoder = GifDecoder::new(BufReader::new(File::open(&path).unwrap())).unwrap();
+    assert_eq!(decoder.into_frames().count(), 3);
+    fixture.harness.get_by_value("0.12 s").set_value_accesskit(3.0);
+    fixture.harness.run_steps(3);
+    fixture.harness.state_mut().session().clock.end = 5.0;
+    fixture.harness.run_steps(2);
+    assert!(fixture.harness.query_by_value("3 s").is_some());
 }
 
 #[test]
@@ -267,6 +300,50 @@ fn escape_closes_menus_and_dialogs_and_nothing_else() {
 }
 
 #[test]
+fn until_a_view_is_computed_the_window_says_which_one_it_shows() {
+    let mut fixture = Fixture::new();
+    fixture.harness.state_mut().session().mode = ViewMode::Normals;
+    fixture.harness.step();
+    assert!(fixture.draws_text("computing Normals…  (this is Shaded)"));
+    let view = "The view: what the picture shows (V for the next).";
+    let view = fixture.harness.get_by_role_and_label(Role::ComboBox, view);
+    assert_eq!(view.value().as_deref(), Some("View: Normals, computing…"));
+    fixture.until(|harness| !harness.state().opened().is_view_pending());
+    fixture.harness.step();
+    assert!(!fixture.draws_text("computing Normals…  (this is Shaded)"));
+    let picture = fixture.harness.state().opened().picture.as_ref().unwrap();
+    assert_eq!(picture.request.mode, ViewMode::Normals);
+}
+
+#[test]
+fn v_chooses_the_next_view_as_often_as_it_is_pressed_in_a_slow_frame() {
+    let mut fixture = Fixture::new();
+    let press = |pressed| Event::Key {
+        key: Key::V,
+        physical_key: None,
+        pressed,
+        repeat: false,
+        modifiers: Modifiers::NONE,
+    };
+    let events = [true, false, true, false, true, false].map(press);
+    fixture.harness.input_mut().events.extend(events);
+    fixture.harness.step();
+    let third = ViewMode::Shaded.next().next().next();
+    assert_eq!(fixture.harness.state().opened().mode, third);
+}
+
+#[test]
+fn before_the_first_picture_of_a_scene_the_window_says_that_it_is_being_drawn() {
+    let mut fixture = Fixture::new();
+    let other = fixture.folder.path().join("other.sdf");
+    std::fs::write(&other, "sphere(2)\n").unwrap();
+    fixture.harness.state_mut().session().open_other(other);
+    fixture.until(|harness| harness.state().opened().model.is_some());
+    assert!(fixture.harness.state().opened().picture.is_none());
+    assert!(fixture.draws_text("drawing the first picture…"));
+}
+
+#[test]
 fn the_code_panel_shows_the_file_with_its_errors() {
     let mut fixture = Fixture::new();
     fixture.click("Drag numbers");
@@ -276,6 +353,20 @@ fn the_code_panel_shows_the_file_with_its_errors() {
     assert!(!fixture.has("How thick"));
     // The marked word.
     assert!(fixture.harness.query_by_label("spere").is_some());
+}
+
+#[test]
+fn the_code_panel_shows_a_file_that_has_errors_from_the_start() {
+    let folder = tempfile::tempdir().unwrap();
+    let (path, text) = (folder.path().join("scene.sdf"), "let own_name = spere(1)\n");
+    std::fs::write(&path, text).unwrap();
+    let app = App::new(&Context::default(), &path, None).unwrap();
+    let mut fixture = Fixture::shown(app, folder);
+    fixture.until(|harness| harness.query_by_label("error[E0201]").is_some());
+    let editor = fixture.harness.get_by_role(Role::MultilineTextInput);
+    assert_eq!(editor.value().as_deref(), Some(text));
+    fixture.click("Drag numbers");
+    assert!(fixture.has("let own_name = "));
 }
 
 #[test]
@@ -334,24 +425,6 @@ fn errors_cover_the_picture_only_when_typing_pauses() {
     fixture.harness.get_by_role(Role::MultilineTextInput).type_text(" ");
     fixture.harness.run_steps(1);
     assert!(fixture.has("error[E0201]"));
-}
-
-#[test]
-fn a_click_on_an_axis_looks_along_it() {
-    let mut fixture = Fixture::of("sphere(1)\n");
-    let rect = fixture.harness.state().picture_rect();
-    // The scene's camera looks from the front, right and above: the end of y is the upper one.
-    let reach = 35.0;
-    let middle = rect.right_top() + eframe::egui::vec2(-reach - 8.0, reach + 8.0);
-    let pose = |fixture: &Fixture| fixture.harness.state().opened().camera().unwrap().pose();
-    let up = pose(&fixture).basis()[1].y as f32;
-    let at = middle - eframe::egui::vec2(0.0, 27.0 * up);
-    fixture.harness.hover_at(at);
-    fixture.harness.run_steps(2);
-    fixture.harness.drag_at(at);
-    fixture.harness.drop_at(at);
-    fixture.harness.run_steps(3);
-    assert!(pose(&fixture).basis()[2].y < -0.99, "{:?}", pose(&fixture));
 }
 
 #[test]
@@ -465,22 +538,6 @@ fn errors_can_be_folded_away() {
     assert!(fixture.harness.query_by_label("error[E0201]").is_none());
     fixture.click("show 2 errors");
     assert!(fixture.has("error[E0201]"));
-}
-
-#[test]
-fn the_camera_rests_while_a_scene_without_a_camera_is_edited() {
-    let mut fixture = Fixture::of("sphere(1)\n");
-    let pose = |fixture: &Fixture| fixture.harness.state().opened().camera().unwrap().pose();
-    let before = pose(&fixture);
-    fixture.write("sphere(3)\n");
-    fixture.until(|harness| {
-        let session = harness.state().opened();
-        session.model.as_ref().is_some_and(|model| model.source == "sphere(3)\n")
-    });
-    fixture.harness.run_steps(3);
-    assert_eq!(pose(&fixture), before);
-    fixture.click("Fit view");
-    assert!((pose(&fixture).eye - before.eye).length() > 1.0);
 }
 
 #[test]
