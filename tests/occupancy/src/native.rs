@@ -16,7 +16,7 @@ pub fn print_statistics() -> Result<(), Failed> {
     println!("Driver: {}.\n", device.driver());
     let mut titles = Vec::new();
     for (name, scene) in compiled_examples()? {
-        let code = spirv(&scene, Part::Render)?;
+        let code = spirv(scene, Part::Render)?;
         let words: Vec<u32> =
             code.as_chunks().0.iter().map(|bytes| u32::from_le_bytes(*bytes)).collect();
         let start = Instant::now();
