@@ -72,6 +72,7 @@ pub(crate) fn analytic_bindings(program: &Program, features: Features) -> Vec<St
     let Rays { first_hit: hits, analytic: closed, marched, clip, copies } = program.rays;
     let closed = closed.filter(|_| features.soft_shadows);
     let marched = marched.filter(|_| features.analytic && features.steps());
+    let copies = copies.filter(|_| features.copies);
     let of_ray =
         [(stubs::ANALYTIC_HIT, hits), (stubs::CLIP_INTERVAL, clip), (stubs::COPIES, copies)]
             .into_iter();
