@@ -2,8 +2,8 @@
 
 use rustc_hash::FxHashMap;
 
-use crate::enclose::{slope_enclosure, tight_enclosure};
 use crate::FAR;
+use crate::enclose::{slope_enclosure, tight_enclosure};
 use crate::graph::Graph;
 use crate::loops::SkipCondition;
 use crate::node::{Dim, NodeId};
