@@ -120,9 +120,9 @@ pub fn precisions(scene: &Scene) -> Result<(usize, Difference), Disagreement> {
     Ok((hit, agree(&single, &double, "f32 and f64", limit, None)?))
 }
 
-/// Compares `auto` with `interval` on the CPU in f64. Here `interval` marches the whole field, so it
-/// checks the analytic hits of `auto` and the boxes to which it clips rays: of every ray that it
-/// proves, it finds the first hit.
+/// Compares `auto` with `interval` on the CPU in f64. Here `interval` marches the whole field, so
+/// it checks the analytic hits of `auto` and the boxes to which it clips rays: of every ray that
+/// it proves, it finds the first hit.
 ///
 /// # Errors
 ///

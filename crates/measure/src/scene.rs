@@ -71,8 +71,8 @@ pub fn truth(
 /// field.
 ///
 /// For a method that bounds the field along segments of a ray, an evaluation is the field and these
-/// bounds; operations that they share count once. If the method pre-intersects, the first evaluation
-/// is that, and the others are of the marched part.
+/// bounds; operations that they share count once. If the method pre-intersects, the first
+/// evaluation is that, and the others are of the marched part.
 pub fn operations(scene: &Scene, marched: &sdfc::Marched<'_>, evaluations: f64) -> f64 {
     let method = marched.method.definition();
     let program = &marched.program;
