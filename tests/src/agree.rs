@@ -10,6 +10,7 @@ use sdfc::{
     Backend, Compiler, Diagnostics, Error, Field, FrameValues, Method, PictureOptions, Scene,
     no_progress,
 };
+use sdfc_graph::{Program, Rays};
 use sdfc_march::PixelBlock;
 use sdfc_render::{
     CpuScene, Difference, HIT, Image, RenderOptions, View, compare, edges, is_unproven,
@@ -119,8 +120,9 @@ pub fn precisions(scene: &Scene) -> Result<(usize, Difference), Disagreement> {
     Ok((hit, agree(&single, &double, "f32 and f64", limit, None)?))
 }
 
-/// Compares `auto` with `interval` on the CPU in f64. Of every ray that it proves, `interval` finds
-/// the first hit.
+/// Compares `auto` with `interval` on the CPU in f64. Here `interval` marches the whole field, so
+/// it checks the analytic hits of `auto` and the boxes to which it clips rays: of every ray that
+/// it proves, it finds the first hit.
 ///
 /// # Errors
 ///
@@ -129,11 +131,11 @@ pub fn methods(scene: &Scene) -> Result<Difference, Disagreement> {
     let frame = FrameValues::defaults(scene.params());
     let view = scene.view(&frame, [SIDE; 2])?;
     let view = View { tolerance: view.tolerance / FINER, ..view };
-    let depths = |method| -> Result<Image, Disagreement> {
-        let marched = scene.marched_on_cpu(method);
-        Ok(CpuScene::new(&marched.program)?.depth_map::<f64>(&view, &frame, marched.method)?)
-    };
-    let (auto, interval) = (depths(METHOD)?, depths(Method::Interval)?);
+    let marched = scene.marched_on_cpu(METHOD);
+    let auto = CpuScene::new(&marched.program)?.depth_map::<f64>(&view, &frame, marched.method)?;
+    let whole = Program { rays: Rays::default(), ..scene.drawn().clone() };
+    let whole = CpuScene::new(&whole.with_segment_bounds(true, false))?;
+    let interval = whole.depth_map::<f64>(&view, &frame, Method::Interval)?;
     let limit = depth_limit(&view, &interval);
     let interval = with_grazed(scene, &view, &auto, interval, limit)?;
     agree(&auto, &interval, "`auto` and `interval`", limit, None)

@@ -14,7 +14,7 @@ use sdfc_codegen::{
     Error, FieldOptions, Lists, PictureOptions, Role, Stage, field_module, march_module,
     picture_module, render_module, shadertoy_module,
 };
-use sdfc_graph::{FrameInput, Graph, Loop, LoopVar, Program, Shadow, Type, Unary};
+use sdfc_graph::{Dim, FrameInput, Graph, Loop, LoopVar, Program, Rays, Shadow, Type, Unary};
 use sdfc_march::{LightBlock, METHODS, Method, PixelBlock, ViewBlock};
 
 fn scenes() -> Vec<Program> {
@@ -27,10 +27,33 @@ fn scenes() -> Vec<Program> {
     let k = both.graph.frame_input(FrameInput::Time, Type::Scalar);
     both.distance = both.distance.map(|distance| both.graph.add(distance, k));
     both.uniforms = vec![k];
+    for copies in [false, true] {
+        for marched in [false, true] {
+            let mut scene = pre_intersected(sphere(), copies, marched);
+            scenes.push(scene.clone());
+            let sharpness = scene.graph.number(8.0);
+            scenes.push(lit(scene, Shadow::Soft(sharpness)));
+        }
+    }
     scenes.push(mirrored(both.clone()));
     scenes.push(mirrored(sphere()));
     scenes.push(both);
     scenes
+}
+
+/// The scene with functions of rays, whose values mean nothing.
+fn pre_intersected(mut scene: Program, copies: bool, marched: bool) -> Program {
+    let [origin, direction] = [0, 1].map(|level| scene.graph.point(level, Dim::Three));
+    let [hit, free] = [origin, direction].map(|vector| scene.graph.component(vector, 0));
+    let ends = scene.graph.compose(&[hit, free]);
+    scene.rays = Rays {
+        first_hit: Some(hit),
+        analytic: scene.distance,
+        marched: scene.distance.filter(|_| marched),
+        clip: Some(ends).filter(|_| marched),
+        copies: Some(ends).filter(|_| copies && marched),
+    };
+    scene
 }
 
 #[test]

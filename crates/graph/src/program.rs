@@ -2,6 +2,7 @@
 
 use rustc_hash::FxHashMap;
 
+use crate::FAR;
 use crate::enclose::{slope_enclosure, tight_enclosure};
 use crate::graph::Graph;
 use crate::loops::SkipCondition;
@@ -76,8 +77,9 @@ pub struct Program {
     pub is_loose: bool,
     /// Functions of a ray that replace or restrict marching `distance`.
     pub rays: Rays,
-    /// Lower and upper bound of `distance` on the segment from `Point(0, Dim::Three)` to
-    /// `Point(1, Dim::Three)`, a 2-vector. `None` unless [`Program::with_segment_bounds`] added it.
+    /// Lower and upper bound of [`Program::marched_field`] on the segment from
+    /// `Point(0, Dim::Three)` to `Point(1, Dim::Three)`, a 2-vector; [`crate::FAR`] if nothing is
+    /// marched. `None` unless [`Program::with_segment_bounds`] added it.
     pub range: Option<NodeId>,
     /// Lower and upper bound of the slope of `distance` on such a segment along the direction
     /// `Point(2, Dim::Three)`, a 2-vector. `None` unless [`Program::with_segment_bounds`] added it.
@@ -117,6 +119,12 @@ impl Program {
         if self.is_planar() { Dim::Two } else { Dim::Three }
     }
 
+    /// Signed distance to what rays have to be marched through after their pre-intersection; `None`
+    /// if that is nothing.
+    pub fn marched_field(&self) -> Option<NodeId> {
+        if self.rays.first_hit.is_some() { self.rays.marched } else { self.distance }
+    }
+
     /// The program with `range` if `value` is set and with `slope_range` if `slope` is set.
     /// Unchanged if there is no distance.
     pub fn with_segment_bounds(&self, value: bool, slope: bool) -> Self {
@@ -125,7 +133,10 @@ impl Program {
         let graph = &mut program.graph;
         let [a, b, direction] = [0, 1, 2].map(|level| graph.point(level, Dim::Three));
         if value {
-            let ends = tight_enclosure(graph, distance, a, [a, b]);
+            let ends = match self.marched_field() {
+                Some(marched) => tight_enclosure(graph, marched, a, [a, b]),
+                None => Some([graph.number(FAR); 2]),
+            };
             program.range = ends.map(|ends| graph.compose(&ends));
         }
         if slope {

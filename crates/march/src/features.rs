@@ -78,6 +78,11 @@ impl Features {
         self.soft_shadows || !self.copies
     }
 
+    /// Returns true if some rays are marched, if only to measure how narrowly they pass things.
+    pub fn marches(self) -> bool {
+        self.marched || self.soft_shadows
+    }
+
     /// The overrides of `features.wgsl` and their values.
     pub fn overrides(self) -> [(&'static str, bool); 31] {
         // Destructured so that a new feature does not compile until it is handled here.
@@ -119,7 +124,7 @@ impl Features {
             ("CLIPPED", clipped),
             ("COPIES", copies),
             ("PRE_INTERSECTS", analytic || clipped),
-            ("ANY_MARCHED", marched || soft_shadows),
+            ("ANY_MARCHED", self.marches()),
             ("SHADOWS", shadows),
             ("SOFT_SHADOWS", soft_shadows),
             ("POSITIONAL_LIGHTS", positional_lights),

@@ -306,7 +306,7 @@ pub static METHODS: [MethodDefinition; 10] = [
         audience: Audience::Users,
         source: include_str!("wgsl/interval.wgsl"),
         gradient: None,
-        pre_intersects: false,
+        pre_intersects: true,
         misses_thin_parts: false,
         parameter: Some(MethodParameter::Tolerance),
         chart_factors: &PIXEL_FACTORS,

@@ -21,8 +21,9 @@ pub const CLIP_INTERVAL: &str = "clip_interval";
 /// that is sampled at its origin, and the distance from there within which nothing else is marched.
 /// Called if [`Features::copies`](crate::Features::copies) is set.
 pub const COPIES: &str = "intersect_copies";
-/// `fn field_range(a: vec3f, b: vec3f) -> vec2f`, bounds of `field` on the segment from a to b.
-/// Called if [`Features::proved`](crate::Features::proved) is set.
+/// `fn field_range(a: vec3f, b: vec3f) -> vec2f`, bounds of the distance to the marched part of the
+/// scene on the segment from a to b. Called if [`Features::proved`](crate::Features::proved) is
+/// set and [`Features::marches`](crate::Features::marches) returns true.
 pub const RANGE: &str = "field_range";
 /// `fn field_slope_range(a: vec3f, b: vec3f, direction: vec3f) -> vec2f`, bounds of the slope of
 /// `field` on the segment from a to b, where `direction` is the unit vector from a to b.

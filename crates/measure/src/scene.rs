@@ -71,7 +71,8 @@ pub fn truth(
 /// field.
 ///
 /// For a method that bounds the field along segments of a ray, an evaluation is the field and these
-/// bounds; operations that they share count once.
+/// bounds; operations that they share count once. If the method pre-intersects, the first
+/// evaluation is that, and the others are of the marched part.
 pub fn operations(scene: &Scene, marched: &sdfc::Marched<'_>, evaluations: f64) -> f64 {
     let method = marched.method.definition();
     let program = &marched.program;
@@ -81,6 +82,13 @@ pub fn operations(scene: &Scene, marched: &sdfc::Marched<'_>, evaluations: f64) 
     if called.is_empty() {
         return scene.report().operations_per_ray(evaluations, method.pre_intersects);
     }
-    let roots: Vec<NodeId> = program.distance.into_iter().chain(called).collect();
-    evaluations * cost(&program.graph, &roots).operations as f64
+    let field = if method.pre_intersects { program.marched_field() } else { program.distance };
+    let roots: Vec<NodeId> = field.into_iter().chain(called).collect();
+    let step = cost(&program.graph, &roots).operations as f64;
+    match scene.report().ray_cost.operations as f64 {
+        first if method.pre_intersects && first > 0.0 => {
+            first + (evaluations - 1.0).max(0.0) * step
+        }
+        _ => evaluations * step,
+    }
 }

@@ -72,6 +72,7 @@ pub(crate) fn analytic_bindings(program: &Program, features: Features) -> Vec<St
     let Rays { first_hit: hits, analytic: closed, marched, clip, copies } = program.rays;
     let closed = closed.filter(|_| features.soft_shadows);
     let marched = marched.filter(|_| features.analytic && features.steps());
+    let copies = copies.filter(|_| features.copies);
     let of_ray =
         [(stubs::ANALYTIC_HIT, hits), (stubs::CLIP_INTERVAL, clip), (stubs::COPIES, copies)]
             .into_iter();
@@ -84,10 +85,11 @@ pub(crate) fn analytic_bindings(program: &Program, features: Features) -> Vec<St
 }
 
 /// The bounds along ray segments that a method asks for. Without bounds of the value a method
-/// samples instead.
+/// samples instead, and where nothing is marched it needs none.
 pub(crate) fn segment_bindings(
     program: &Program,
     method: &MethodDefinition,
+    features: Features,
 ) -> Result<Vec<StubBinding>, Error> {
     let known = [
         StubBinding::of_segment(Role::Range, stubs::RANGE, program.range, &["a", "b"]),
@@ -98,7 +100,8 @@ pub(crate) fn segment_bindings(
             &["a", "b", "direction"],
         ),
     ];
-    let samples = |stub| stub == stubs::RANGE && program.range.is_none();
-    let wanted = known.into_iter().filter(|(stub, _)| method.calls(stub) && !samples(*stub));
+    let proves = program.range.is_some() && features.marches();
+    let is_unused = |stub| stub == stubs::RANGE && !proves;
+    let wanted = known.into_iter().filter(|(stub, _)| method.calls(stub) && !is_unused(*stub));
     wanted.map(|(stub, binding)| binding.ok_or(Error::MissingRoot(stub))).collect()
 }

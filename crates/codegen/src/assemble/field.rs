@@ -57,7 +57,7 @@ fn functions(
     }
     let distance = program.distance.ok_or(Error::NothingDrawn)?;
     let mut program = program.clone();
-    let features = ray_features(&program, method.is_some_and(|method| method.pre_intersects));
+    let features = ray_features(&program, method);
     let mut bindings = vec![StubBinding::of_point(Some(Role::Distance), stubs::FIELD, distance)];
     if options.gradient {
         let gradient = program.gradient.ok_or(Error::MissingRoot("gradient"))?;
@@ -67,7 +67,7 @@ fn functions(
     let program = &program;
     bindings.extend(analytic_bindings(program, features));
     if let Some(method) = method {
-        bindings.extend(segment_bindings(program, method)?);
+        bindings.extend(segment_bindings(program, method, features)?);
     }
     let material = program.material.filter(|_| options.material);
     let mut nodes: Vec<_> = bindings.iter().map(|binding| binding.root).collect();

@@ -67,7 +67,7 @@ impl<'p> PictureLinker<'p> {
         }
         let distance = program.distance.ok_or(Error::NothingDrawn)?;
         let gradient = program.gradient.ok_or(Error::MissingRoot("gradient"))?;
-        let mut features = features(program, method.pre_intersects);
+        let mut features = features(program, Some(method));
         features.culled = culled && is_culled(program, method);
         let writes_pixels = matches!(form, Form::Compute | Form::Normals);
         features.records_gaps = writes_pixels && method.calls(stubs::RECORD_GAP);
@@ -80,7 +80,7 @@ impl<'p> PictureLinker<'p> {
         if method.gradient.is_none() {
             bindings.push(StubBinding::of_point(Some(Role::Gradient), stubs::GRADIENT, gradient));
         }
-        bindings.extend(segment_bindings(program, method)?);
+        bindings.extend(segment_bindings(program, method, features)?);
         let exposure = program.settings.exposure.and_then(|exposure| exposure.factor);
         bindings.extend(exposure.map(|root| StubBinding::of_frame(stubs::EXPOSURE, root)));
         let mut roots: Vec<_> = bindings.iter().map(|binding| binding.root).collect();

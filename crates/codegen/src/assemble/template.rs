@@ -25,14 +25,16 @@ pub(crate) fn template(
     parse_template(source, &features.overrides(), &unused)
 }
 
-/// The features for the analytic intersection of rays, if the method asks for it.
-pub(crate) fn ray_features(program: &Program, pre_intersects: bool) -> Features {
+/// The features for the analytic intersection of rays, if there is a method that asks for it.
+pub(crate) fn ray_features(program: &Program, method: Option<&MethodDefinition>) -> Features {
+    let pre_intersects = method.is_some_and(|method| method.pre_intersects);
+    let intersects_copies = method.is_some_and(|method| method.calls(stubs::COPIES));
     let Rays { first_hit: hits, analytic: _, marched, clip, copies } = program.rays;
     Features {
         analytic: pre_intersects && hits.is_some(),
         marched: !pre_intersects || hits.is_none() || marched.is_some(),
         clipped: pre_intersects && clip.is_some(),
-        copies: pre_intersects && copies.is_some(),
+        copies: intersects_copies && copies.is_some(),
         proved: program.range.is_some(),
         loose: program.is_loose,
         ..Features::default()
@@ -40,7 +42,7 @@ pub(crate) fn ray_features(program: &Program, pre_intersects: bool) -> Features 
 }
 
 /// The features that a scene's picture needs.
-pub(super) fn features(program: &Program, pre_intersects: bool) -> Features {
+pub(super) fn features(program: &Program, method: Option<&MethodDefinition>) -> Features {
     let settings = &program.settings;
     let mut features = Features {
         materials: program.material.is_some(),
@@ -57,7 +59,7 @@ pub(super) fn features(program: &Program, pre_intersects: bool) -> Features {
         neutral_tone: settings.exposure.is_some_and(|it| it.tone == Tone::Neutral),
         film_tone: settings.exposure.is_some_and(|it| it.tone == Tone::Film),
         parallel: settings.is_parallel(),
-        ..ray_features(program, pre_intersects)
+        ..ray_features(program, method)
     };
     for light in &settings.lights {
         match light.source {

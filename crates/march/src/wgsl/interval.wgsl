@@ -7,6 +7,9 @@
 //
 // The rest of a ray that runs out of steps is sampled, without a proof (`sampling.wgsl`). A scene
 // whose bounds prove next to nothing has no `field_range`: its rays are sampled from the start.
+//
+// Analytic parts of the scene are intersected without marching, and rays are clipped to the box
+// around the rest (`pre_intersection.wgsl`).
 
 // The shortest segment, as a fraction of the tolerance. It grows up to COARSEST tolerances as a ray
 // spends its steps: near a jump the bounds stay wide however short the segment is.
@@ -20,10 +23,30 @@ fn tolerance(ray: Ray, t: f32) -> f32 {
     return footprint_tolerance(ray, t);
 }
 
+fn trace(ray: Ray) -> Trace {
+    var found: Trace;
+    if PRE_INTERSECTS {
+        let known = pre_intersect(ray);
+        found = Trace(0.0, MISS, 0u);
+        if ANY_MARCHED {
+            if known.start <= known.end {
+                // The march ends where the ray does, so its steps suffice for the shorter way.
+                var rest = advanced(ray, known.start);
+                rest.t_max = known.end - known.start;
+                found = march(rest);
+            }
+        }
+        found = combined(ray, known, found);
+    } else {
+        found = march(ray);
+    }
+    return found;
+}
+
 // Each iteration examines a segment or takes a step, and samples the field first where the ray has
 // moved. A loop over segments within one over samples would be natural, but a software driver
 // (Mesa 22) mixes up the rays of a workgroup there if the field has loops too.
-fn trace(ray: Ray) -> Trace {
+fn march(ray: Ray) -> Trace {
     // The ray is free of the surface up to the last sample outside.
     var bracket: Bracket;
     var t = 0.0;
@@ -43,7 +66,7 @@ fn trace(ray: Ray) -> Trace {
     let budget = proving + SAMPLE_BUDGET_FACTOR * ray.steps;
     while evaluations < budget {
         if !shortened {
-            distance = field(ray_point(ray, t));
+            distance = marched_field(ray_point(ray, t));
             record_sample(t, distance);
             // A ray that starts inside or on a surface hits at its origin.
             if evaluations == 0u && distance < hit_within(ray, t, tolerance(ray, t)) {
@@ -62,7 +85,8 @@ fn trace(ray: Ray) -> Trace {
                 return Trace(t, HIT, evaluations);
             }
         } else if !(t < ray.t_max) {
-            return Trace(t, MISS, evaluations);
+            // Beyond the end of any ray; NaN where the field is NaN.
+            return Trace(t + FAR, MISS, evaluations);
         } else if evaluations >= proving {
             record_gap();
             t = min(t + sampling_step(ray, t, distance, slope, budget - evaluations), ray.t_max);

@@ -65,6 +65,14 @@ impl CpuMethod {
     /// Returns true if it asks for the analytic pre-intersection.
     pub(crate) fn pre_intersects(self) -> bool {
         match self {
+            Self::Sphere => false,
+            Self::Auto | Self::Interval => true,
+        }
+    }
+
+    /// Returns true if it intersects copies analytically, a few at a time.
+    pub(crate) fn intersects_copies(self) -> bool {
+        match self {
             Self::Sphere | Self::Interval => false,
             Self::Auto => true,
         }

@@ -61,7 +61,7 @@ pub struct CpuScene {
     field: CachedField,
     /// The analytic pre-intersection, for methods that ask for it.
     pre_intersection: Option<PreIntersectionTapes>,
-    /// Bounds of the field on a segment, for the method that asks for them.
+    /// Bounds of the marched part of the field on a segment, for the method that asks for them.
     range: Option<Tape>,
     gradient: Option<Tape>,
     /// The material of a surface that is seen, see `Program::seen_material`.
@@ -196,7 +196,8 @@ impl CpuScene {
         let [width, height] = view.size;
         let rays = u64::from(width) * u64::from(height);
         let range = self.range.as_ref().map_or(0, Tape::operations);
-        let step = rays.saturating_mul(self.field.tape.operations().saturating_add(range) as u64);
+        let field = self.marched().unwrap_or(&self.field).tape.operations();
+        let step = rays.saturating_mul(field.saturating_add(range) as u64);
         let steps = u32::try_from(work / step.max(1)).unwrap_or(u32::MAX);
         if steps == 0 {
             return Ok(rays);

@@ -23,8 +23,8 @@ pub(super) struct PreIntersectionTapes {
 impl PreIntersectionTapes {
     /// `None` if the program has no analytic part and no box.
     pub(super) fn new(program: &Program) -> Result<Option<Self>, TapeError> {
-        let Program { graph, rays, distance, .. } = program;
-        let marched = if rays.first_hit.is_some() { rays.marched } else { *distance };
+        let Program { graph, rays, .. } = program;
+        let marched = program.marched_field();
         let roots: Vec<_> = rays.first_hit.into_iter().chain(rays.clip).collect();
         if roots.is_empty() && rays.copies.is_none() {
             return Ok(None);

@@ -61,6 +61,11 @@ impl<T: Real> Ray<T> {
         Self { origin, radius, t_max, ..*self }
     }
 
+    /// The part of the ray between two positions.
+    pub(super) fn between(&self, [start, end]: [T; 2]) -> Self {
+        Self { t_max: end - start, ..self.advanced(start) }
+    }
+
     /// The largest error of a point of the ray by rounding.
     pub(super) fn rounding(&self, t: T) -> T {
         let [x, y, z] = self.origin;

@@ -95,7 +95,7 @@ impl<T: Real> Walk<T> {
         Self {
             whole: ray,
             known,
-            ray: ray.advanced(known.start),
+            ray: ray.between([known.start, known.end]),
             end: known.end - known.start,
             t: zero,
             evaluations: 0,

@@ -115,11 +115,14 @@ impl<'a, T: Real> Wave<'a, T> {
         if records_clearance {
             return trace(self.field, self.range.as_mut(), rays, Some(&known), &limits);
         }
-        if let Some(copies) = &mut pre_intersection.copies {
+        let copies = pre_intersection.copies.as_mut();
+        if let Some(copies) = copies.filter(|_| limits.method.intersects_copies()) {
             return trace_among_copies(copies, rays, &known, &limits);
         }
-        let field = self.marched.unwrap_or(self.field);
-        let mut traces = trace(field, self.range.as_mut(), rays, Some(&known), &limits);
+        let Some(marched) = self.marched else {
+            return trace(self.field, self.range.as_mut(), rays, Some(&known), &limits);
+        };
+        let mut traces = trace(marched, self.range.as_mut(), rays, Some(&known), &limits);
         // Cells of another field have no gradients.
         traces.iter_mut().for_each(|trace| trace.cell = None);
         traces

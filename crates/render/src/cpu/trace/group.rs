@@ -131,7 +131,10 @@ impl<'r, 'c, T: Real> Group<'r, 'c, T> {
     /// A ray from the start of its march on.
     pub(super) fn ray(&self, index: usize) -> Ray<T> {
         match self.known {
-            Some(known) => self.rays[index].advanced(known[index].start),
+            Some(known) => {
+                let PreIntersection { start, end, .. } = known[index];
+                self.rays[index].between([start, end])
+            }
             None => self.rays[index],
         }
     }

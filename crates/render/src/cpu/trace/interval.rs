@@ -1,5 +1,7 @@
 //! The method `interval` on the CPU, as in the shader.
 
+use sdfc_graph::FAR;
+
 use super::{Limits, Next, Walk};
 use crate::cpu::ray::Real;
 
@@ -49,7 +51,7 @@ impl<T: Real> Walk<T> {
             return next;
         }
         if self.t >= self.end {
-            return Next::At(self.end + self.end);
+            return Next::At(T::constant(FAR));
         }
         if !has_bounds {
             return self.unproven_step(limits);
