@@ -19,7 +19,16 @@ use sdfc_tests::validators::{TOOLS, Tool, is_written, write};
 use sdfc_tests::{compile_examples, compiled_examples};
 use written::Written;
 
+/// What makes Mesa's software drivers compile without optimisation. The tests draw small pictures
+/// with hundreds of shaders, and compiling takes nearly all of their time: half as long this way.
+const UNOPTIMISED: (&str, &str) = ("GALLIVM_PERF", "nopt");
+
 fn main() {
+    if std::env::var_os(UNOPTIMISED.0).is_none()
+        && let Some(code) = unoptimised()
+    {
+        std::process::exit(code);
+    }
     let mut trials = vec![
         Trial::test("two_prefixes_go_into_one_file", paste::two_prefixes_go_into_one_file),
         Trial::test("the_table_is_current", table::is_current),
@@ -42,6 +51,13 @@ fn main() {
         trials.push(trial.with_ignored_flag(testing::without_gpu()));
     }
     libtest_mimic::run(&Arguments::from_args(), trials).exit();
+}
+
+/// Runs this program with the variable set, which drivers read once; `None` if that fails.
+fn unoptimised() -> Option<i32> {
+    let (name, value) = UNOPTIMISED;
+    let mut command = std::process::Command::new(std::env::current_exe().ok()?);
+    command.args(std::env::args_os().skip(1)).env(name, value).status().ok()?.code()
 }
 
 /// Draws a scene in two ways and compares the pictures.

@@ -1,5 +1,12 @@
 // The output for a pixel of rays.
 
+// True for a number that is none. A compiler may assume that there are no such numbers: one of a
+// graphics card turned `select(t, limit, t > limit)` into a minimum, which is `limit` where t is
+// NaN. It knows nothing of bits.
+fn is_nan(number: f32) -> bool {
+    return (bitcast<u32>(number) & 0x7fffffffu) > 0x7f800000u;
+}
+
 // A ray that ran out of steps shows the background, as one that missed.
 fn pixel_of(primary: Trace, color: vec3f, evaluations: u32) -> Pixel {
     var depth = primary.t;

@@ -34,13 +34,6 @@ struct Trace {
     evaluations: u32,
 }
 
-// True for a number that is none. A compiler may assume that there are no such numbers: one of a
-// graphics card turned `select(t, limit, t > limit)` into a minimum, which is `limit` where t is
-// NaN. It knows nothing of bits.
-fn is_nan(number: f32) -> bool {
-    return (bitcast<u32>(number) & 0x7fffffffu) > 0x7f800000u;
-}
-
 // Relative rounding error of a position: eight units in the last place, for sums of a few terms.
 const ROUNDING: f32 = 1e-6;
 
