@@ -24,6 +24,7 @@ fn main() {
     let trials = vec![
         Trial::test("every_pixel_comes_back_from_its_place", every_pixel_comes_back_from_its_place),
         Trial::test("an_adaptive_frame_grows_its_tiles", an_adaptive_frame_grows_its_tiles),
+        Trial::test("a_frame_begins_with_larger_tiles", a_frame_begins_with_larger_tiles),
         Trial::test("impossible_calls_are_refused", impossible_calls_are_refused),
         Trial::test("a_bad_shader_is_an_error", a_bad_shader_is_an_error),
         Trial::test("the_device_survives_an_error", the_device_survives_an_error),
@@ -241,6 +242,25 @@ fn an_adaptive_frame_grows_its_tiles() -> Outcome {
     assert!(timid.tiles > 1000, "{} tiles", timid.tiles);
     assert_eq!(adaptive.clock == Clock::Gpu, gpu.has_timestamps());
     assert!(adaptive.milliseconds > 0.0 && adaptive.milliseconds < 60_000.0);
+    Ok(())
+}
+
+fn a_frame_begins_with_larger_tiles() -> Outcome {
+    let gpu = Gpu::new()?;
+    let view = common::view(&common::sphere(), [1024, 512]);
+    let pipeline = Pipeline::from_wgsl(&gpu, PATTERN, 2)?;
+    let tile_size = TileSize::Adaptive { milliseconds: 1e6 };
+    let options = RenderOptions { tile_size, region: None };
+    let frame = || pipeline.render(&view, &VALUES, &options, &mut no_progress);
+    let (first, second) = (frame()?, frame()?);
+    assert!(first.tiles > 1, "nothing is known of the first frame");
+    assert_eq!(second.tiles, 1);
+    assert_eq!(first.image.pixels(), second.image.pixels());
+    // A cancelled frame is one that something is known of, too.
+    let stop = &mut |_| std::ops::ControlFlow::Break(());
+    let cancelled = pipeline.render(&view, &VALUES, &options, stop).err();
+    assert_eq!(cancelled, Some(RenderError::Cancelled));
+    assert_eq!(frame()?.tiles, 1);
     Ok(())
 }
 

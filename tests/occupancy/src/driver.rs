@@ -111,6 +111,11 @@ impl Device {
     }
 }
 
+/// The words of a module that is stored as bytes.
+pub fn words(code: &[u8]) -> Vec<u32> {
+    code.as_chunks().0.iter().map(|bytes| u32::from_le_bytes(*bytes)).collect()
+}
+
 /// The instructions of a module: the number of the operation, then its operands.
 fn instructions(words: &[u32]) -> impl Iterator<Item = (u32, &[u32])> {
     let mut rest = words.get(5..).unwrap_or(&[]);

@@ -5,7 +5,7 @@ use std::time::Instant;
 use libtest_mimic::Failed;
 use sdfc_tests::compiled_examples;
 
-use crate::driver::Device;
+use crate::driver::{self, Device};
 use crate::spirv;
 use crate::table::Part;
 
@@ -17,8 +17,7 @@ pub fn print_statistics() -> Result<(), Failed> {
     let mut titles = Vec::new();
     for (name, scene) in compiled_examples()? {
         let code = spirv(scene, Part::Render)?;
-        let words: Vec<u32> =
-            code.as_chunks().0.iter().map(|bytes| u32::from_le_bytes(*bytes)).collect();
+        let words = driver::words(&code);
         let start = Instant::now();
         let mut found = device.statistics(&words).map_err(|error| format!("{name}: {error}"))?;
         found.retain(|(title, _)| !title.to_lowercase().contains("hash"));

@@ -139,8 +139,7 @@ fn compiled(folder: &Path) -> Result<Run, String> {
     let (mut shaders, mut times) = (Vec::new(), Vec::new());
     for path in paths {
         let code = std::fs::read(&path).map_err(|error| error.to_string())?;
-        let words: Vec<u32> =
-            code.as_chunks().0.iter().map(|bytes| u32::from_le_bytes(*bytes)).collect();
+        let words = driver::words(&code);
         let start = Instant::now();
         let named = device.statistics(&words).map_err(|e| format!("{}: {e}", path.display()))?;
         times.push(start.elapsed().as_micros() as u64);

@@ -1,8 +1,8 @@
 // The output for a pixel of rays.
 
-// True for a number that is none. A compiler may assume that there are no such numbers: one of a
-// graphics card turned `select(t, limit, t > limit)` into a minimum, which is `limit` where t is
-// NaN. It knows nothing of bits.
+// True for NaN. A compiler may assume that no number is NaN: NVIDIA's turned
+// `select(t, limit, t > limit)` into a minimum, which is `limit` where t is NaN. A test of the bits
+// stays as it is.
 fn is_nan(number: f32) -> bool {
     return (bitcast<u32>(number) & 0x7fffffffu) > 0x7f800000u;
 }
