@@ -62,6 +62,25 @@ fn on_paths(mut range_along: impl FnMut(&mut BranchPath) -> Interval) -> Vec<Int
     }
 }
 
+/// Between 0 and 1 the step has no slope as long as its edges lie apart, but it jumps where they
+/// meet.
+#[test]
+fn a_smoothstep_has_no_gradient_bounds_where_its_edges_meet() {
+    let mut graph = Graph::new();
+    let p = graph.point(0, Dim::Three);
+    let [x, y] = [0, 1].map(|axis| graph.component(p, axis));
+    let [lo, apart] = [-2.0, -3.0].map(|value| graph.number(value));
+    let is_above = graph.lt(x, y);
+    let hi = graph.select(is_above, lo, apart);
+    let step = graph.ternary(Ternary::Smoothstep, lo, hi, x);
+    let tape = Tape::new(&graph, &[step]).unwrap();
+    let frame = frame(0.0);
+    let mut field = tape.prepare::<f64>(&frame);
+    assert_eq!([0.0, 1.0].map(|y| field.scalar([0.5, y, 0.0])), [0.0, 1.0]);
+    let region = [[0.5, 0.5], [0.0, 1.0], [0.0, 0.0]].map(|[lo, hi]| Interval::new(lo, hi));
+    assert_eq!(tape.gradient_over(&frame, region), None);
+}
+
 /// True if two results are the same number, or both are NaN.
 fn same(a: f64, b: f64) -> bool {
     a.to_bits() == b.to_bits() || (a.is_nan() && b.is_nan())

@@ -311,7 +311,8 @@ impl<N: Number> Number for Dual<N> {
         let value = self.value.smoothstep(hi.value, x.value);
         let t = x.sub(self).div(hi.sub(self)).saturate();
         let slope = N::constant(6.0).mul(t.value.mul(N::constant(1.0).sub(t.value)));
-        t.chain(value, slope)
+        // Where the edges meet, the step is a jump.
+        t.chain(value, slope).with_jump(self.value.eq(hi.value))
     }
     #[inline(always)]
     fn select(self, yes: Self, no: Self) -> Self {
