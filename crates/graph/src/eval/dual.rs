@@ -237,7 +237,10 @@ impl<N: Number> Number for Dual<N> {
         let by_base = y.value.mul(self.value.pow(y.value.sub(N::constant(1.0))));
         // x^y ln x tends to 0 with x for positive y, the only ones defined at 0.
         let by_power = unless_zero(self.value, value.mul(self.value.log()));
-        self.chain2(y, value, [by_base, by_power])
+        // 0^y jumps from 1 to 0 where y leaves 0.
+        let zero = N::constant(0.0);
+        let may_jump = self.value.eq(zero).and(y.value.eq(zero));
+        self.chain2(y, value, [by_base, by_power]).with_jump(may_jump)
     }
     #[inline(always)]
     fn atan2(self, x: Self) -> Self {

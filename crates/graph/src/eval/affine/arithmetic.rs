@@ -1,6 +1,6 @@
 //! The operations of the closed set.
 
-use super::Affine;
+use super::{Affine, ROUNDING};
 use crate::eval::{Interval, Number};
 
 fn number(value: f64) -> Interval {
@@ -165,7 +165,14 @@ impl Number for Affine {
         self.minus(y.times(whole)).within(range)
     }
     fn mix(self, y: Self, t: Self) -> Self {
-        self.plus(y.minus(self).times(t)).within(self.range.mix(y.range, t.range))
+        // Numbers are mixed as x (1 - t) + y t. Where t is large, both terms are larger than their
+        // sum, and so is their rounding.
+        let [x_size, y_size, t_size] = [self, y, t].map(|it| it.range.magnitude());
+        let rounding = ROUNDING * (x_size * (1.0 + t_size) + y_size * t_size);
+        let mut mixed = self.plus(y.minus(self).times(t));
+        mixed.error += rounding;
+        mixed.range = Interval::ENTIRE;
+        mixed.within(self.range.mix(y.range, t.range))
     }
     fn clamp(self, lo: Self, hi: Self) -> Self {
         self.extreme(lo, true).extreme(hi, false)

@@ -1,6 +1,6 @@
 //! Functions of one and two affine forms.
 
-use super::Affine;
+use super::{Affine, LEAST_SLOPE};
 use crate::eval::{Interval, Number};
 
 fn number(value: f64) -> Interval {
@@ -104,7 +104,8 @@ impl Affine {
         let is_cut = self.range.contains(0.0) && x.range.lo() <= 0.0;
         let [by_y, by_x] = [x.range.div(norm), self.range.neg().div(norm)];
         let widths = [by_y, by_x].map(|slope| slope.hi() - slope.lo());
-        if is_cut || !(widths[0] + widths[1]).is_finite() {
+        let is_flat = by_y.magnitude().min(by_x.magnitude()) < LEAST_SLOPE;
+        if is_cut || is_flat || !(widths[0] + widths[1]).is_finite() {
             return Self::from_range(range);
         }
         let middle = |slope: Interval| 0.5 * slope.lo() + 0.5 * slope.hi();

@@ -9,6 +9,12 @@ use crate::eval::{Interval, Number};
 /// Relative bound of the rounding errors of one operation on affine forms.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
+/// Absolute bound of what underflow takes from the terms of one operation.
+const UNDERFLOW: f64 = f64::MIN_POSITIVE;
+
+/// The least slope of which underflow takes no more than rounding does.
+const LEAST_SLOPE: f64 = f64::MIN_POSITIVE / f64::EPSILON;
+
 /// A number over a box, as an affine function of the box's coordinates and a bound of the rest.
 ///
 /// The value at the coordinates `t`, each from -1 to 1, is `center + slopes * t`, with an error of
@@ -44,7 +50,7 @@ impl Affine {
     /// both ranges. A form that is no number is replaced by its range.
     fn new(center: f64, slopes: [f64; 3], error: f64, range: Interval) -> Self {
         let reach = slopes.iter().map(|slope| slope.abs()).sum::<f64>();
-        let error = error + ROUNDING * (center.abs() + reach + error);
+        let error = error + ROUNDING * (center.abs() + reach + error) + UNDERFLOW;
         let radius = (reach + error) * (1.0 + ROUNDING);
         if !(center + radius).is_finite() {
             return Self::from_range(range);
@@ -61,7 +67,8 @@ impl Affine {
     fn from_range(range: Interval) -> Self {
         let center = 0.5 * range.lo() + 0.5 * range.hi();
         let error = (0.5 * range.hi() - 0.5 * range.lo()) * (1.0 + ROUNDING)
-            + ROUNDING * range.lo().abs().max(range.hi().abs());
+            + ROUNDING * range.lo().abs().max(range.hi().abs())
+            + UNDERFLOW;
         if error.is_finite() && center.is_finite() {
             Self { center, slopes: [0.0; 3], error, range }
         } else {
@@ -90,7 +97,7 @@ impl Affine {
         let range = f(self.range);
         let scale = 0.5 * slope.lo() + 0.5 * slope.hi();
         let width = 0.5 * (self.range.hi() - self.range.lo());
-        if !scale.is_finite() || !width.is_finite() {
+        if !scale.is_finite() || !width.is_finite() || slope.magnitude() < LEAST_SLOPE {
             return Self::from_range(range);
         }
         let middle = self.range.lo() + width;
