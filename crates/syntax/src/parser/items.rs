@@ -113,6 +113,9 @@ impl Parser<'_> {
         self.bump();
         let mut names = Vec::new();
         loop {
+            if self.kind() == TokenKind::Text {
+                return self.import_without_names();
+            }
             let name = self.name("a name to import")?;
             let renamed = if self.at_word("as") {
                 self.bump();
@@ -134,6 +137,13 @@ impl Parser<'_> {
         self.bump();
         let path = self.string("a path in quotes")?;
         Ok(Import { names, path, span: self.since(start) })
+    }
+
+    /// Reports `import "path"`, which imports everything in other languages.
+    fn import_without_names<T>(&mut self) -> Parsed<T> {
+        let path = self.slice(self.span()).to_owned();
+        let help = format!("name what you use of the file: import spur, rack as bar from {path}");
+        self.expected_with("a name to import", &[&help])
     }
 
     /// A string, unescaped.
