@@ -4,7 +4,7 @@
 
 mod common;
 
-use common::{each_node_in_shader, graph, steps};
+use common::{cases, each_node_in_shader, graph, steps};
 use proptest::prelude::*;
 use sdfc_graph::eval::{FrameValues, Tape};
 use sdfc_graph::{
@@ -122,7 +122,7 @@ fn varies(graph: &Graph, id: NodeId) -> bool {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(600) })]
+    #![proptest_config(cases(600))]
 
     #[test]
     fn bounds_contain_every_sample(

@@ -2,10 +2,10 @@
 
 mod common;
 
-use common::{each_node, graph, steps};
+use common::{cases, each_node, graph, steps};
 use proptest::prelude::*;
 use sdfc_graph::eval::{Affine, BranchPath, Dual, FrameValues, Interval, Number, Packet, Tape};
-use sdfc_graph::{Dim, Graph, NodeId, Ternary, Type};
+use sdfc_graph::{Binary, Dim, FrameInput, Graph, NodeId, Ternary, Type, Unary};
 
 /// Coordinates of all sizes, whole and half numbers among them.
 fn coordinate() -> impl Strategy<Value = f64> {
@@ -81,6 +81,61 @@ fn a_smoothstep_has_no_gradient_bounds_where_its_edges_meet() {
     assert_eq!(tape.gradient_over(&frame, region), None);
 }
 
+/// `0^y` is 1 where y is 0, and 0 where y is more.
+#[test]
+fn a_power_of_zero_has_no_gradient_bounds_where_its_exponent_leaves_zero() {
+    let mut graph = Graph::new();
+    let p = graph.point(0, Dim::Three);
+    let y = graph.component(p, 1);
+    let base = graph.frame_input(FrameInput::Param(0), Type::Scalar);
+    let power = graph.binary(Binary::Pow, base, y);
+    let tape = Tape::new(&graph, &[power]).unwrap();
+    let frame = frame(0.0);
+    let mut field = tape.prepare::<f64>(&frame);
+    assert_eq!([0.0, 0.5].map(|y| field.scalar([0.0, y, 0.0])), [1.0, 0.0]);
+    let region = [[0.0, 0.0], [0.0, 0.5], [0.0, 0.0]].map(|[lo, hi]| Interval::new(lo, hi));
+    assert_eq!(tape.gradient_over(&frame, region), None);
+}
+
+/// The derivative of `1 / sqrt(x)` at `exp(660)` is less than the least number of f64.
+#[test]
+fn affine_forms_cover_slopes_that_underflow() {
+    let mut graph = Graph::new();
+    let p = graph.point(0, Dim::Three);
+    let z = graph.component(p, 2);
+    let power = graph.unary(Unary::Exp, z);
+    let root = graph.unary(Unary::InverseSqrt, power);
+    assert_affine_contains(&graph, root, 0.0, [658.0, 661.0]);
+}
+
+/// `x (1 - t) + x t` is x, but for rounding of the size of `x t`.
+#[test]
+fn affine_forms_cover_the_rounding_of_mixtures_far_outside() {
+    let mut graph = Graph::new();
+    let p = graph.point(0, Dim::Three);
+    let t = graph.component(p, 2);
+    let x = graph.frame_input(FrameInput::Param(0), Type::Scalar);
+    let zero = graph.number(0.0);
+    let is_below = graph.lt(t, zero);
+    let also_x = graph.select(is_below, t, x);
+    let mixed = graph.ternary(Ternary::Mix, also_x, x, t);
+    assert_affine_contains(&graph, mixed, 2.541_496, [5000.0, 5400.0]);
+}
+
+/// Looks at a field of z and the param along a range of z.
+fn assert_affine_contains(graph: &Graph, root: NodeId, param: f64, z: [f64; 2]) {
+    let tape = Tape::new(graph, &[root]).unwrap();
+    let frame = frame(param);
+    let region = coordinates([[0.0; 2], [0.0; 2], z]);
+    let bounds = tape.prepare::<Affine>(&frame).scalar(region).range();
+    let mut field = tape.prepare::<f64>(&frame);
+    for step in 0..=100 {
+        let point = [0.0, 0.0, z[0] + (z[1] - z[0]) * f64::from(step) / 100.0];
+        let value = field.scalar(point);
+        assert!(bounds.contains(value), "{value} at {point:?} is not in {bounds:?}");
+    }
+}
+
 /// The nodes up to one of them, for messages.
 fn nodes_to(graph: &Graph, last: NodeId) -> String {
     let nodes = graph.ids().take(last.index() + 1);
@@ -107,7 +162,7 @@ fn is_constant(whole: Dual, special: Dual, (axis, coordinate): (usize, f64)) -> 
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(2000) })]
+    #![proptest_config(cases(2000))]
 
     #[test]
     fn a_tape_computes_the_same_as_its_nodes(

@@ -6,6 +6,14 @@ use sdfc_graph::{
     Binary, Const, Dim, FrameInput, Graph, Node, NodeId, Stage, Ternary, Type, Unary,
 };
 
+/// The settings of a random test: `usual` cases, or with the variable `SDFC_CASES_TIMES` that many
+/// times as many.
+pub fn cases(usual: u32) -> ProptestConfig {
+    let times = std::env::var("SDFC_CASES_TIMES").ok().and_then(|times| times.parse().ok());
+    let cases = usual.saturating_mul(times.unwrap_or(1));
+    ProptestConfig { cases, failure_persistence: None, ..ProptestConfig::default() }
+}
+
 /// Operations on one argument. `Normalize`, which takes vectors only, is the last.
 pub const UNARY: &[Unary] = &[
     Unary::Neg,
