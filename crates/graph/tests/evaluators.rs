@@ -105,27 +105,13 @@ fn affine_forms_cover_slopes_that_underflow() {
     let z = graph.component(p, 2);
     let power = graph.unary(Unary::Exp, z);
     let root = graph.unary(Unary::InverseSqrt, power);
-    assert_affine_contains(&graph, root, 0.0, [658.0, 661.0]);
+    assert_affine_contains(&graph, root, [658.0, 661.0]);
 }
 
-/// `x (1 - t) + x t` is x, but for rounding of the size of `x t`.
-#[test]
-fn affine_forms_cover_the_rounding_of_mixtures_far_outside() {
-    let mut graph = Graph::new();
-    let p = graph.point(0, Dim::Three);
-    let t = graph.component(p, 2);
-    let x = graph.frame_input(FrameInput::Param(0), Type::Scalar);
-    let zero = graph.number(0.0);
-    let is_below = graph.lt(t, zero);
-    let also_x = graph.select(is_below, t, x);
-    let mixed = graph.ternary(Ternary::Mix, also_x, x, t);
-    assert_affine_contains(&graph, mixed, 2.541_496, [5000.0, 5400.0]);
-}
-
-/// Looks at a field of z and the param along a range of z.
-fn assert_affine_contains(graph: &Graph, root: NodeId, param: f64, z: [f64; 2]) {
+/// Looks at a field of z along a range of z.
+fn assert_affine_contains(graph: &Graph, root: NodeId, z: [f64; 2]) {
     let tape = Tape::new(graph, &[root]).unwrap();
-    let frame = frame(param);
+    let frame = frame(0.0);
     let region = coordinates([[0.0; 2], [0.0; 2], z]);
     let bounds = tape.prepare::<Affine>(&frame).scalar(region).range();
     let mut field = tape.prepare::<f64>(&frame);
