@@ -105,20 +105,14 @@ fn affine_forms_cover_slopes_that_underflow() {
     let z = graph.component(p, 2);
     let power = graph.unary(Unary::Exp, z);
     let root = graph.unary(Unary::InverseSqrt, power);
-    assert_affine_contains(&graph, root, [658.0, 661.0]);
-}
-
-/// Looks at a field of z along a range of z.
-fn assert_affine_contains(graph: &Graph, root: NodeId, z: [f64; 2]) {
-    let tape = Tape::new(graph, &[root]).unwrap();
+    let tape = Tape::new(&graph, &[root]).unwrap();
     let frame = frame(0.0);
-    let region = coordinates([[0.0; 2], [0.0; 2], z]);
+    let region = coordinates([[0.0, 0.0], [0.0, 0.0], [658.0, 661.0]]);
     let bounds = tape.prepare::<Affine>(&frame).scalar(region).range();
     let mut field = tape.prepare::<f64>(&frame);
-    for step in 0..=100 {
-        let point = [0.0, 0.0, z[0] + (z[1] - z[0]) * f64::from(step) / 100.0];
-        let value = field.scalar(point);
-        assert!(bounds.contains(value), "{value} at {point:?} is not in {bounds:?}");
+    for z in [658.0, 659.0, 660.0, 661.0] {
+        let value = field.scalar([0.0, 0.0, z]);
+        assert!(bounds.contains(value), "{value} at {z} is not in {bounds:?}");
     }
 }
 
