@@ -171,6 +171,13 @@ impl Chromium {
         }
     }
 
+    /// Forgets the texts that the pages of a server have stored, so that the next page is opened as
+    /// at a first visit.
+    pub fn forget_texts_of(&mut self, server: &str) -> Result<(), Failed> {
+        let params = json!({ "origin": server, "storageTypes": "local_storage" });
+        self.call("Storage.clearDataForOrigin", params).map(drop)
+    }
+
     /// Gives the window another size.
     pub fn resize(&mut self, [width, height]: [u32; 2]) -> Result<(), Failed> {
         let metrics =

@@ -89,6 +89,8 @@ impl<'c> Page<'c> {
     ) -> Result<Self, Failed> {
         // An address that differs in its fragment alone would not load the page again.
         chromium.open("about:blank", window)?;
+        // The page would show the scene of the test before, and not draw if it is written again.
+        chromium.forget_texts_of(&server()?.url(""))?;
         chromium.open(&server()?.url(&format!("index.html{rest}")), window)?;
         let mut page = Self { chromium };
         page.expect_state("drawn")?;
