@@ -232,6 +232,7 @@ fn wrong_command_lines_exit_with_2() {
         &["check", "-q", "-v", "scene.sdf"],
         &["render", "scene.sdf", "-o", "scene.sdf"],
         &["render", "scene.sdf", "-o", "-", "--stats", "-"],
+        &["bench", "--suite", "--only", "no such scene"],
     ] {
         let output = run(&folder, args);
         assert_eq!(status(&output), 2, "{args:?}: {}", text(&output.stderr));

@@ -6,6 +6,9 @@
 
 mod common;
 
+use std::process::{Command, Stdio};
+use std::time::Duration;
+
 use common::{folder, names, run_in, said};
 use libtest_mimic::{Arguments, Failed, Trial};
 use sdfc_render::testing::{LOSE_DEVICE, without_gpu};
@@ -34,6 +37,9 @@ fn main() {
     trials.push(tuned.with_ignored_flag(without_gpu()));
     let sampled = Trial::test("samples a step apart prove nothing", samples_prove_nothing);
     trials.push(sampled.with_ignored_flag(without_gpu()));
+    let stopped =
+        Trial::test("stopped measurements keep the scenes before", stopped_measurements_are_kept);
+    trials.push(stopped.with_ignored_flag(without_gpu()));
     let steep = Trial::test("too few steps name the steepest shape", too_few_steps_name_a_shape);
     trials.push(steep.with_ignored_flag(without_gpu()));
     libtest_mimic::run(&Arguments::from_args(), trials).exit();
@@ -166,6 +172,32 @@ fn a_folder_gets_all_charts() -> Result<(), Failed> {
 fn while_measuring() -> Result<(), Failed> {
     let (_, names) = lost("40", "bench a.sdf --size 32x20 --json b.json")?;
     if names != ["a.sdf"] { Err(format!("left {names:?}").into()) } else { Ok(()) }
+}
+
+/// Ctrl-C in a later scene leaves the results of the first.
+fn stopped_measurements_are_kept() -> Result<(), Failed> {
+    let folder = folder(&[("a.sdf", BALL)]);
+    let results = folder.path().join("b.json");
+    let mut process = Command::new(env!("CARGO_BIN_EXE_sdfc"))
+        .args("bench a.sdf --suite --size 24x16 --json b.json".split(' '))
+        .current_dir(folder.path())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()?;
+    while !results.exists() && process.try_wait()?.is_none() {
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    Command::new("kill").args(["-INT", &process.id().to_string()]).status()?;
+    let output = process.wait_with_output()?;
+    let said = said(&output);
+    let is_told = said.contains("stopped after") && said.contains("they are in b.json");
+    if output.status.code() != Some(130) || !is_told {
+        return Err(format!("{:?}, {said}", output.status).into());
+    }
+    let report: serde_json::Value = serde_json::from_slice(&std::fs::read(results)?)?;
+    let has_first = report["rows"][0]["scene"] == "a.sdf";
+    let printed = String::from_utf8_lossy(&output.stdout).contains("a.sdf: ");
+    if has_first && printed { Ok(()) } else { Err(report.to_string().into()) }
 }
 
 /// The metrics are written even if no method reaches the error.

@@ -12,12 +12,13 @@ use crate::failure::Failure;
 use crate::interrupt::Interrupt;
 use crate::output::{self, Output};
 
-/// Measures the scenes, prints a table and writes the results.
+/// Measures the scenes, prints a table and writes the results. Both grow with each scene, so that
+/// nothing that was measured is lost if the program is stopped.
 ///
 /// # Errors
 ///
-/// A scene cannot be read, has errors or draws nothing; the machine has no GPU, or cannot write the
-/// results.
+/// A scene cannot be read, has errors or draws nothing; no scene has the wanted name; the machine
+/// has no GPU, or cannot write the results.
 pub fn run(args: &Bench, console: &Console) -> Result<(), Failure> {
     let scene = args.file.as_deref().map(|file| Entry::from_file(file, console)).transpose()?;
     let json = args.json.as_deref().map(Output::new);
@@ -41,9 +42,15 @@ pub fn run(args: &Bench, console: &Console) -> Result<(), Failure> {
     for (name, text) in large.filter(|(name, _)| wanted(name)) {
         scenes.push(Entry::from_suite(name, &text, false)?);
     }
+    if scenes.is_empty() {
+        let part = args.only.as_deref().unwrap_or_default();
+        return Err(Failure::Call(format!("no scene of the suites has `{part}` in its name")));
+    }
     let gpu = super::gpu(console)?;
     let interrupt = Interrupt::watch("stopped; nothing was written", console);
-    let mut rows = Vec::new();
+    let (adapter, driver) = (gpu.info().name.clone(), gpu.info().driver.clone());
+    let mut report = BenchReport { adapter, driver, rows: Vec::new() };
+    let prints_table = json != Some(Output::Stdout);
     for Entry { name, scene, live, baselines } in &scenes {
         let (size, baselines) = (args.size, *baselines);
         let options = BenchOptions::new().size(size).baselines(baselines);
@@ -55,18 +62,25 @@ pub fn run(args: &Bench, console: &Console) -> Result<(), Failure> {
         });
         drop(progress);
         let failed = |error| interrupt.explained(super::measuring(&error, console));
-        rows.push(row.map_err(failed)?);
-    }
-    let (adapter, driver) = (gpu.info().name.clone(), gpu.info().driver.clone());
-    let report = BenchReport { adapter, driver, rows };
-    if json != Some(Output::Stdout) {
-        output::to_stdout(table(&report).as_bytes())?;
+        report.rows.push(row.map_err(failed)?);
+        interrupt.set_message(stopped(report.rows.len(), scenes.len(), args.json.as_deref()));
+        if prints_table {
+            output::to_stdout(latest(&report).as_bytes())?;
+            json.as_ref().map_or(Ok(()), |json| json.write(&output::json(&report)?))?;
+        }
     }
     if let Some(plot) = plot {
         let drawn = growth_svg(&growth(&report), Font(sdfc_lang::font::SANS));
         plot.write(drawn.map_err(|error| Failure::Machine(error.to_string()))?.as_bytes())?;
     }
     json.map_or(Ok(()), |json| json.write(&output::json(&report)?))
+}
+
+/// Says what is left of an interrupted run.
+fn stopped(done: usize, all: usize, json: Option<&Path>) -> String {
+    let file = json.filter(|path| path.as_os_str() != "-");
+    let place = file.map_or_else(String::new, |path| format!("; they are in {}", path.display()));
+    format!("stopped after {done} of {all} scenes{place}")
 }
 
 /// Returns the cost per pixel of the scattered scenes, as CPU time if the GPU is a software one.
@@ -134,26 +148,24 @@ fn without_live_literals(errors: &Diagnostics) -> String {
     format!("the scene does not compile with its numbers as params: {message}")
 }
 
-/// Formats the report: times in milliseconds, and ratios to the specialised shader. CPU time is
-/// given for a software GPU.
-fn table(report: &BenchReport) -> String {
-    let mut text = format!("{}, driver {}\n", report.adapter, report.driver);
-    for row in &report.rows {
-        let BenchRow { scene, leaves, size: [width, height], method, auto, variants, .. } = row;
-        text += &format!(
-            "\n{scene}: {leaves} leaves, {width}x{height}, method {method}, auto is {auto}"
-        );
-        for (ratio, of) in [
-            (row.auto_times_best_frame, "frame"),
-            (row.auto_times_best_first_picture, "first picture"),
-        ] {
-            text +=
-                &ratio.map_or_else(String::new, |ratio| format!(", {ratio:.2} of the best {of}"));
-        }
-        text.push('\n');
-        text += "  variant             frame ms   ratio    cpu ms   ratio  evals/px  leaves/px  iters/eval  front ms  analyze ms  lower ms  pipeline ms  first picture ms\n";
-        variants.iter().for_each(|variant| text += &line(variant));
+/// Formats the results of the latest scene, with the device above the first one: times in
+/// milliseconds, and ratios to the specialised shader. CPU time is given for a software GPU.
+fn latest(report: &BenchReport) -> String {
+    let BenchReport { adapter, driver, rows } = report;
+    let Some(row) = rows.last() else { return String::new() };
+    let BenchRow { scene, leaves, size: [width, height], method, auto, variants, .. } = row;
+    let mut text = match rows.len() {
+        1 => format!("{adapter}, driver {driver}\n\n"),
+        _ => "\n".to_owned(),
+    };
+    text += &format!("{scene}: {leaves} leaves, {width}x{height}, method {method}, auto is {auto}");
+    for (ratio, of) in
+        [(row.auto_times_best_frame, "frame"), (row.auto_times_best_first_picture, "first picture")]
+    {
+        text += &ratio.map_or_else(String::new, |ratio| format!(", {ratio:.2} of the best {of}"));
     }
+    text += "\n  variant             frame ms   ratio    cpu ms   ratio  evals/px  leaves/px  iters/eval  front ms  analyze ms  lower ms  pipeline ms  first picture ms\n";
+    variants.iter().for_each(|variant| text += &line(variant));
     text
 }
 
