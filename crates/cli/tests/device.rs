@@ -190,8 +190,8 @@ fn stopped_measurements_are_kept() -> Result<(), Failed> {
     Command::new("kill").args(["-INT", &process.id().to_string()]).status()?;
     let output = process.wait_with_output()?;
     let said = said(&output);
-    let is_told = said.contains("stopped after") && said.contains("they are in b.json");
-    if output.status.code() != Some(130) || !is_told {
+    let is_said = said.contains("stopped after") && said.contains("they are in b.json");
+    if output.status.code() != Some(130) || !is_said {
         return Err(format!("{:?}, {said}", output.status).into());
     }
     let report: serde_json::Value = serde_json::from_slice(&std::fs::read(results)?)?;

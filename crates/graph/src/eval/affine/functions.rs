@@ -1,6 +1,6 @@
 //! Functions of one and two affine forms.
 
-use super::{Affine, LEAST_SLOPE};
+use super::{Affine, LEAST_SLOPE, underflow};
 use crate::eval::{Interval, Number};
 
 fn number(value: f64) -> Interval {
@@ -30,7 +30,8 @@ impl Affine {
         let radius = self.radius();
         let bend = 0.5 * radius * radius;
         let slopes = self.slopes.map(|slope| 2.0 * self.center * slope);
-        let error = 2.0 * self.center.abs() * self.error + bend * (1.0 + 1e-14);
+        let error =
+            2.0 * self.center.abs() * self.error + bend * (1.0 + 1e-14) + underflow(self.size());
         Self::new(self.center * self.center + bend, slopes, error, self.range.square())
     }
 

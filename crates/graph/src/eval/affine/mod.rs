@@ -12,6 +12,12 @@ const ROUNDING: f64 = 16.0 * f64::EPSILON;
 /// Absolute bound of what underflow takes from the terms of one operation.
 const UNDERFLOW: f64 = f64::MIN_POSITIVE;
 
+/// Returns what underflow may take from the terms of a form of a size. A form that is exactly 0 has
+/// no terms, and stays exact.
+fn underflow(size: f64) -> f64 {
+    if size == 0.0 { 0.0 } else { UNDERFLOW }
+}
+
 /// The least slope of which underflow takes no more than rounding does.
 const LEAST_SLOPE: f64 = f64::MIN_POSITIVE / f64::EPSILON;
 
@@ -50,7 +56,8 @@ impl Affine {
     /// both ranges. A form that is no number is replaced by its range.
     fn new(center: f64, slopes: [f64; 3], error: f64, range: Interval) -> Self {
         let reach = slopes.iter().map(|slope| slope.abs()).sum::<f64>();
-        let error = error + ROUNDING * (center.abs() + reach + error) + UNDERFLOW;
+        let size = center.abs() + reach + error;
+        let error = error + ROUNDING * size + underflow(size);
         let radius = (reach + error) * (1.0 + ROUNDING);
         if !(center + radius).is_finite() {
             return Self::from_range(range);
@@ -67,8 +74,8 @@ impl Affine {
     fn from_range(range: Interval) -> Self {
         let center = 0.5 * range.lo() + 0.5 * range.hi();
         let error = (0.5 * range.hi() - 0.5 * range.lo()) * (1.0 + ROUNDING)
-            + ROUNDING * range.lo().abs().max(range.hi().abs())
-            + UNDERFLOW;
+            + ROUNDING * range.magnitude()
+            + underflow(range.magnitude());
         if error.is_finite() && center.is_finite() {
             Self { center, slopes: [0.0; 3], error, range }
         } else {
@@ -79,6 +86,11 @@ impl Affine {
     /// Returns the greatest distance of a value from the center.
     fn radius(self) -> f64 {
         self.slopes.iter().map(|slope| slope.abs()).sum::<f64>() + self.error
+    }
+
+    /// Returns a bound of the absolute value; 0 only for the number 0.
+    fn size(self) -> f64 {
+        self.center.abs() + self.radius()
     }
 
     /// Returns `scale * self + offset`, where `offset` is an interval.
@@ -135,7 +147,8 @@ impl Affine {
             std::array::from_fn(|axis| self.center * y.slopes[axis] + y.center * self.slopes[axis]);
         let error = self.center.abs() * y.error
             + y.center.abs() * self.error
-            + self.radius() * y.radius() * (1.0 + ROUNDING);
+            + self.radius() * y.radius() * (1.0 + ROUNDING)
+            + underflow(self.size()).min(underflow(y.size()));
         Self::new(self.center * y.center, slopes, error, self.range.mul(y.range))
     }
 
