@@ -116,6 +116,30 @@ fn affine_forms_cover_slopes_that_underflow() {
     }
 }
 
+/// `x (1 - t) + x t` is x, but for rounding of the size of `x t`, and `1 / z` has no limit.
+#[test]
+fn affine_forms_cover_the_rounding_of_mixtures() {
+    let mut graph = Graph::new();
+    let p = graph.point(0, Dim::Three);
+    let [y, z] = [1, 2].map(|axis| graph.component(p, axis));
+    let x = graph.frame_input(FrameInput::Param(0), Type::Scalar);
+    let one = graph.number(1.0);
+    let t = graph.div(one, z);
+    // The graph would fold a mixture of a node with itself.
+    let is_below = graph.lt(one, y);
+    let also_x = graph.select(is_below, z, x);
+    let mixed = graph.ternary(Ternary::Mix, also_x, x, t);
+    let tape = Tape::new(&graph, &[mixed]).unwrap();
+    let frame = frame(2.541_496_140_880_951_3);
+    let region = coordinates([[0.0, 0.0], [0.0, 0.0], [-1e-3, 1e-3]]);
+    let bounds = tape.prepare::<Affine>(&frame).scalar(region).range();
+    let mut field = tape.prepare::<f64>(&frame);
+    for z in [-9.3e-4, -7.1e-5, -3.3e-6, 1.7e-6, 4.9e-5, 8.3e-4] {
+        let value = field.scalar([0.0, 0.0, z]);
+        assert!(bounds.contains(value), "{value} at {z} is not in {bounds:?}");
+    }
+}
+
 /// The nodes up to one of them, for messages.
 fn nodes_to(graph: &Graph, last: NodeId) -> String {
     let nodes = graph.ids().take(last.index() + 1);

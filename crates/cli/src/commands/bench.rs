@@ -63,7 +63,7 @@ pub fn run(args: &Bench, console: &Console) -> Result<(), Failure> {
         drop(progress);
         let failed = |error| interrupt.explained(super::measuring(&error, console));
         report.rows.push(row.map_err(failed)?);
-        interrupt.set_message(stopped(report.rows.len(), scenes.len(), args.json.as_deref()));
+        interrupt.set_message(stopped(report.rows.len(), scenes.len(), json.as_ref()));
         if prints_table {
             output::to_stdout(latest(&report).as_bytes())?;
             json.as_ref().map_or(Ok(()), |json| json.write(&output::json(&report)?))?;
@@ -73,14 +73,22 @@ pub fn run(args: &Bench, console: &Console) -> Result<(), Failure> {
         let drawn = growth_svg(&growth(&report), Font(sdfc_lang::font::SANS));
         plot.write(drawn.map_err(|error| Failure::Machine(error.to_string()))?.as_bytes())?;
     }
-    json.map_or(Ok(()), |json| json.write(&output::json(&report)?))
+    match json {
+        Some(json) if !prints_table => json.write(&output::json(&report)?),
+        // A file has all rows already.
+        Some(_) | None => Ok(()),
+    }
 }
 
 /// Says what is left of an interrupted run.
-fn stopped(done: usize, all: usize, json: Option<&Path>) -> String {
-    let file = json.filter(|path| path.as_os_str() != "-");
-    let place = file.map_or_else(String::new, |path| format!("; they are in {}", path.display()));
-    format!("stopped after {done} of {all} scenes{place}")
+fn stopped(done: usize, all: usize, json: Option<&Output>) -> String {
+    match json {
+        Some(Output::Stdout) => "stopped; nothing was written".to_owned(),
+        Some(Output::File(path)) => {
+            format!("stopped after {done} of {all} scenes; they are in {}", path.display())
+        }
+        None => format!("stopped after {done} of {all} scenes"),
+    }
 }
 
 /// Returns the cost per pixel of the scattered scenes, as CPU time if the GPU is a software one.

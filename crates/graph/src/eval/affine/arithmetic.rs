@@ -166,13 +166,11 @@ impl Number for Affine {
     }
     fn mix(self, y: Self, t: Self) -> Self {
         // Numbers are mixed as x (1 - t) + y t. Where t is large, both terms are larger than their
-        // sum, and so is their rounding.
+        // sum, and so is their rounding. Where t has no limit, nothing but the range is known.
         let [x_size, y_size, t_size] = [self, y, t].map(|it| it.range.magnitude());
         let rounding = ROUNDING * (x_size * (1.0 + t_size) + y_size * t_size);
-        let mut mixed = self.plus(y.minus(self).times(t));
-        mixed.error += rounding;
-        mixed.range = Interval::ENTIRE;
-        mixed.within(self.range.mix(y.range, t.range))
+        let Self { center, slopes, error, .. } = self.plus(y.minus(self).times(t));
+        Self::new(center, slopes, error + rounding, self.range.mix(y.range, t.range))
     }
     fn clamp(self, lo: Self, hi: Self) -> Self {
         self.extreme(lo, true).extreme(hi, false)
