@@ -29,6 +29,7 @@ mod analytic;
 mod certify;
 mod colored;
 mod cost;
+mod guards;
 mod leaves;
 mod planar;
 mod prepare;

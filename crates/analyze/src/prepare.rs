@@ -12,6 +12,7 @@ use crate::certify::conservative::conservative_field;
 use crate::certify::inexact::inexact_operators;
 use crate::certify::quality::Qualities;
 use crate::cost::{Cost, cost};
+use crate::guards::guards;
 use crate::leaves::count_leaves;
 use crate::planar::planar_picture;
 use crate::report::{Report, shape_reports};
@@ -109,10 +110,13 @@ fn flatten(
     if has_material {
         flat.extend(expander.material(graph, root, point)?);
     }
+    let with_material = flat.len();
+    flat.extend(operands.marched.iter().map(|operand| operand.value));
     let chains = if uses_loops { expander.material_chains(graph)? } else { Vec::new() };
     let (folded, chains) = fold_with_chains(graph, &flat, chains);
     program.names = folded.names(graph, &expander.names());
-    let (fields, material) = folded.roots.split_at(count);
+    let (flat, marched) = folded.roots.split_at(with_material);
+    let (fields, material) = flat.split_at(count);
     let (mut fields, mut material, mut loops) = (fields.to_vec(), material.to_vec(), Vec::new());
     if uses_loops {
         let rerolled = reroll(graph, &fields);
@@ -130,6 +134,8 @@ fn flatten(
     if !program.cullable_loops.is_empty() && has_secondary_rays(&program.settings) {
         program.loop_bounds = looped_bounds(graph, &mut bounds, root);
     }
+    let known = (&mut bounds, &qualities);
+    program.guards = guards(graph, &mut expander, known, &operands.marched, marched, &fields)?;
     let queries = ray_queries(graph, &mut expander, &mut bounds, &operands)?;
     program.rays = ray_functions(&operands, &fields, queries);
     let Rays { first_hit, marched, clip, copies, .. } = program.rays;

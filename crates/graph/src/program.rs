@@ -5,6 +5,7 @@ use rustc_hash::FxHashMap;
 use crate::FAR;
 use crate::enclose::{slope_enclosure, tight_enclosure};
 use crate::graph::Graph;
+use crate::guard::Guard;
 use crate::loops::SkipCondition;
 use crate::node::{Dim, NodeId};
 use crate::scene::{Param, Settings};
@@ -91,6 +92,8 @@ pub struct Program {
     /// its normal `Point(1, Dim::Three)` and the direction to the eye `Point(2, Dim::Three)`, both
     /// of unit length. `None` if no field reads the last two.
     pub seen_material: Option<[NodeId; 6]>,
+    /// Operands of unions that need not be evaluated everywhere.
+    pub guards: Vec<Guard>,
     /// Loops whose iterations can be culled.
     pub cullable_loops: Vec<CullableLoop>,
     /// Corners of a box around the surfaces that loops are part of, known per frame. `None` where
@@ -158,6 +161,7 @@ impl Program {
         let exposure = self.settings.exposure.and_then(|exposure| exposure.factor);
         let singles = [exposure, self.planar_pixel];
         let single = fields.into_iter().chain(rays).chain(singles).flatten();
-        single.chain(material).chain(culling_bounds).collect()
+        let guards = self.guards.iter().map(|guard| guard.bound);
+        single.chain(material).chain(culling_bounds).chain(guards).collect()
     }
 }

@@ -56,9 +56,10 @@ fn functions(
         return Err(Error::Planar("a function of a ray"));
     }
     let distance = program.distance.ok_or(Error::NothingDrawn)?;
-    let mut program = program.clone();
+    let mut program = program.guarded();
+    let field = program.distance.unwrap_or(distance);
     let features = ray_features(&program, method);
-    let mut bindings = vec![StubBinding::of_point(Some(Role::Distance), stubs::FIELD, distance)];
+    let mut bindings = vec![StubBinding::of_point(Some(Role::Distance), stubs::FIELD, field)];
     if options.gradient {
         let gradient = program.gradient.ok_or(Error::MissingRoot("gradient"))?;
         let gradient = with_value(&mut program.graph, gradient, distance);

@@ -104,7 +104,7 @@ fn link_benchmark(
     if program.is_planar() {
         return Err(Error::Planar("a benchmark"));
     }
-    let method = method.definition();
+    let (program, method) = (&program.guarded(), method.definition());
     let distance = match field {
         FieldSource::Scene => return link_picture(program, Form::Compute, method, None),
         FieldSource::Distance => Some(program.distance.ok_or(Error::NothingDrawn)?),
@@ -149,7 +149,7 @@ fn link_benchmark(
 /// [`Error::BadPrefix`]; others as [`render_module`].
 pub fn picture_module(program: &Program, options: &PictureOptions) -> Result<Shader, Error> {
     check_prefix(&options.prefix)?;
-    let method = options.method.definition();
+    let (program, method) = (&program.guarded(), options.method.definition());
     let form = match options.stage {
         Stage::Compute => Form::Compute,
         Stage::Fragment if options.rows_up => Form::FragmentUp,
@@ -184,6 +184,7 @@ fn link_picture(
     method: &MethodDefinition,
     parallel: Option<bool>,
 ) -> Result<Shader, Error> {
+    let program = &program.guarded();
     let mut picture = PictureLinker::new(program, form, method, parallel, &[], true)?;
     let (inputs, load_frame) = declare_slots(&mut picture.module, program, &picture.used, SLOTS);
     if let Some(load_frame) = load_frame {

@@ -93,6 +93,18 @@ impl Body {
         self.push(Statement::Loop { body, continuing: Block::new(), break_if: None });
     }
 
+    /// Opens the block of a branch: the next statements run only where its condition is true.
+    pub(crate) fn open_branch(&mut self) {
+        self.outer.push(std::mem::take(&mut self.function.body));
+    }
+
+    /// Closes the branch. Values that were computed within can no longer be used.
+    pub(crate) fn close_branch(&mut self, condition: Value) {
+        let accept =
+            std::mem::replace(&mut self.function.body, self.outer.pop().unwrap_or_default());
+        self.push(Statement::If { condition, accept, reject: Block::new() });
+    }
+
     /// Appends a statement.
     pub(crate) fn push(&mut self, statement: Statement) {
         self.function.body.push(statement, Span::UNDEFINED);

@@ -171,7 +171,7 @@ impl Lowering<'_> {
     }
 
     /// Forgets the values that were computed in a loop's body, which are out of scope after it.
-    fn forget<'b>(&mut self, nodes: impl Iterator<Item = &'b NodeId>) {
+    pub(super) fn forget<'b>(&mut self, nodes: impl Iterator<Item = &'b NodeId>) {
         for id in nodes {
             self.values.remove(*id);
             self.words.remove(id);

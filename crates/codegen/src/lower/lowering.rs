@@ -161,14 +161,16 @@ impl<'a> Lowering<'a> {
 
     /// Computes ascending nodes, each near its first use and after its arguments.
     pub(super) fn visit(&mut self, roots: &[NodeId], nodes: &[NodeId]) -> Result<(), Error> {
-        for id in scheduled(&self.program.graph, roots, nodes, self.inputs) {
+        let (guarded, nodes) = self.without_guarded(roots, nodes);
+        for id in scheduled(&self.program.graph, roots, &nodes, self.inputs) {
             let node = self.program.graph.node(id);
             if matches!(node, Node::Const(_)) {
                 continue;
             }
-            let value = match self.inputs.read_slot(&mut self.body, id) {
-                Some(value) => value,
-                None => self.node(id, node)?,
+            let value = match (self.inputs.read_slot(&mut self.body, id), guarded.get(&id)) {
+                (Some(value), _) => value,
+                (None, Some(within)) => self.guarded(id, within)?,
+                (None, None) => self.node(id, node)?,
             };
             self.values.insert(id, value);
             self.name(id, node, value);

@@ -2,6 +2,7 @@
 
 pub(crate) mod active_lists;
 pub(crate) mod body;
+mod guards;
 mod hash;
 pub(crate) mod inputs;
 mod iteration;

@@ -123,15 +123,18 @@ pub(crate) fn scheduled(
     members: &[NodeId],
     inputs: &Inputs,
 ) -> Vec<NodeId> {
-    schedule(graph, roots, members, |id| {
-        if inputs.is_slot(id) {
-            Vec::new()
-        } else if let Node::Loop(looped, ..) = graph.node(id) {
-            graph.loop_inputs(looped)
-        } else {
-            operands(graph, id).collect()
-        }
-    })
+    schedule(graph, roots, members, |id| reads(graph, id, inputs))
+}
+
+/// The nodes that are computed before a node; for a loop those outside its body.
+pub(crate) fn reads(graph: &Graph, id: NodeId, inputs: &Inputs) -> Vec<NodeId> {
+    if inputs.is_slot(id) {
+        Vec::new()
+    } else if let Node::Loop(looped, ..) = graph.node(id) {
+        graph.loop_inputs(looped)
+    } else {
+        operands(graph, id).collect()
+    }
 }
 
 /// The nodes that the lowering of a node reads.

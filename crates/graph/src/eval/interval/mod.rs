@@ -96,6 +96,8 @@ impl Interval {
 
 /// Relative margin for library functions, which do not promise exact rounding.
 const MARGIN: f64 = 8.0 * f64::EPSILON;
+/// The same for results below `f64::MIN_POSITIVE`, whose last place is always the same.
+const LEAST_MARGIN: f64 = f64::from_bits(8);
 
 /// The next number below a lower end that was rounded once.
 fn lower(end: f64) -> f64 {
@@ -109,7 +111,7 @@ fn upper(end: f64) -> f64 {
 
 /// A number below a lower end that a library function computed.
 fn below(end: f64) -> f64 {
-    if end.is_infinite() { lower(end) } else { lower(end - end.abs() * MARGIN) }
+    if end.is_infinite() { lower(end) } else { lower(end - (end.abs() * MARGIN).max(LEAST_MARGIN)) }
 }
 
 /// A number above an upper end that a library function computed.

@@ -1,0 +1,80 @@
+//! Guards: cheap lower bounds of operands that cost much.
+//!
+//! The exact signed distance to a solid is at least the signed distance to any box that contains
+//! the solid, on both sides: a ball around a point outside the box does not reach the solid, and a
+//! ball within the solid lies within the box.
+
+use sdfc_graph::{Bounds, Dim, ExpandError, Expander, Graph, Guard, NodeId, reachable};
+
+use crate::analytic::operands::{MarchedOperand, bounding_shape};
+use crate::certify::quality::Qualities;
+use crate::cost::cost;
+
+/// The least number of operations of a guarded operand. The distance to a box takes 15.
+const LEAST_OPERATIONS: usize = 150;
+/// Largest number of guards. Each is a branch.
+const MAX_GUARDS: usize = 16;
+/// The fraction of its size by which a box is enlarged: more than the rounding errors of f32.
+const MARGIN: f64 = 1e-5;
+
+/// The guards of the operands whose field is exact and bounded. `fields` are the roots that the
+/// guards are for, `values` the fields of the operands in the same graph.
+pub(crate) fn guards(
+    graph: &mut Graph,
+    expander: &mut Expander,
+    (bounds, qualities): (&mut Bounds, &Qualities),
+    operands: &[MarchedOperand],
+    values: &[NodeId],
+    fields: &[NodeId],
+) -> Result<Vec<Guard>, ExpandError> {
+    let mut guards = Vec::new();
+    let kept = reachable(graph, fields);
+    for (operand, &value) in operands.iter().zip(values) {
+        let is_exact =
+            qualities.get(operand.shape).is_some_and(|quality| quality.sides.is_exact());
+        let is_wanted = is_exact
+            && kept.binary_search(&value).is_ok()
+            && cost(graph, &[value]).operations >= LEAST_OPERATIONS;
+        if !is_wanted || guards.len() == MAX_GUARDS {
+            continue;
+        }
+        if let Some(bound) = distance_to_box(graph, expander, bounds, operand)? {
+            guards.push(Guard { operand: value, bound });
+        }
+    }
+    Ok(guards)
+}
+
+/// The signed distance to a box around an operand; `None` if the box has no end.
+fn distance_to_box(
+    graph: &mut Graph,
+    expander: &mut Expander,
+    bounds: &mut Bounds,
+    operand: &MarchedOperand,
+) -> Result<Option<NodeId>, ExpandError> {
+    let Some(shape) = bounding_shape(graph, std::slice::from_ref(operand)) else { return Ok(None) };
+    let point = graph.point(0, Dim::Three);
+    let [lo, hi] = bounds.of(graph, shape);
+    let [lo, hi] = [expander.node(graph, lo, &[point])?, expander.node(graph, hi, &[point])?];
+    if ![lo, hi].into_iter().all(|corner| graph.is_finite(corner)) {
+        return Ok(None);
+    }
+    let [half, margin] = [0.5, MARGIN].map(|factor| graph.number(factor));
+    let [sum, size] = [graph.add(hi, lo), graph.sub(hi, lo)];
+    let [center, half] = [graph.mul(sum, half), graph.mul(size, half)];
+    let far = graph.abs(center);
+    let far = graph.add(far, half);
+    let margin = graph.mul(far, margin);
+    let half = graph.add(half, margin);
+    let from_center = graph.sub(point, center);
+    let away = graph.abs(from_center);
+    let past = graph.sub(away, half);
+    let zero = graph.number(0.0);
+    let outside = graph.max(past, zero);
+    let outside = graph.length(outside);
+    let [x, y, z] = [0, 1, 2].map(|lane| graph.component(past, lane));
+    let deepest = graph.max(y, z);
+    let deepest = graph.max(x, deepest);
+    let inside = graph.min(deepest, zero);
+    Ok(Some(graph.add(outside, inside)))
+}

@@ -1,0 +1,100 @@
+//! Operands of a minimum that are evaluated in a branch.
+
+use rustc_hash::{FxHashMap, FxHashSet};
+use sdfc_graph::{Graph, Node, NodeId, guarded_minimum};
+
+use super::body::Value;
+use super::inputs::Inputs;
+use super::lowering::Lowering;
+use super::types;
+use super::uses::reads;
+use crate::error::Error;
+
+/// The nodes that are computed in the branch of each guarded minimum.
+pub(super) type Branches = FxHashMap<NodeId, Vec<NodeId>>;
+
+impl Lowering<'_> {
+    /// Splits ascending nodes into those that only the operand of a guarded minimum needs, and all
+    /// others.
+    pub(super) fn without_guarded(
+        &self,
+        roots: &[NodeId],
+        nodes: &[NodeId],
+    ) -> (Branches, Vec<NodeId>) {
+        let graph = &self.program.graph;
+        let mut branches = Branches::default();
+        // What an iteration of a loop computes for its condition, the rest of it may read.
+        if self.iterations.iter().any(Option::is_some) {
+            return (branches, nodes.to_vec());
+        }
+        let mut inside: FxHashSet<NodeId> = FxHashSet::default();
+        // A later minimum may have an earlier one in its branch.
+        for &id in nodes.iter().rev() {
+            let Some(minimum) = guarded_minimum(graph, id) else { continue };
+            if inside.contains(&id) || self.inputs.is_slot(id) {
+                continue;
+            }
+            let private = private_nodes(graph, roots, nodes, minimum.with_operand, self.inputs);
+            // The first of the loops that run listed iterations finds the lists for all of them.
+            if private.is_empty() || private.iter().any(|&id| self.is_listed(id)) {
+                continue;
+            }
+            inside.extend(&private);
+            branches.insert(id, private);
+        }
+        let outside = nodes.iter().copied().filter(|id| !inside.contains(id)).collect();
+        (branches, outside)
+    }
+
+    fn is_listed(&self, id: NodeId) -> bool {
+        let Node::Loop(looped, ..) = self.program.graph.node(id) else { return false };
+        let skip = self.program.graph.loop_at(looped).skip;
+        self.inputs.active_lists.as_ref().is_some_and(|lists| lists.index_of(skip).is_some())
+    }
+
+    /// Writes a guarded minimum: a variable that the branch lowers.
+    pub(super) fn guarded(&mut self, id: NodeId, within: &[NodeId]) -> Result<Value, Error> {
+        let graph = &self.program.graph;
+        let minimum = guarded_minimum(graph, id).ok_or(Error::NotFlat(id))?;
+        let ty = types::value(self.types, graph.ty(id));
+        let variable = self.body.variable("least", ty);
+        let (condition, without) = (self.value(minimum.condition)?, self.value(minimum.without)?);
+        self.body.store(variable, without);
+        self.body.open_branch();
+        let matrices = self.matrices.clone();
+        self.visit(&[minimum.with_operand], within)?;
+        let with_operand = self.value(minimum.with_operand)?;
+        self.body.store(variable, with_operand);
+        self.body.close_branch(condition);
+        self.matrices = matrices;
+        self.forget(within.iter());
+        Ok(self.body.load(variable, "s"))
+    }
+}
+
+/// The nodes that are read for `root` alone, and `root` itself, if it is read once; all nodes are
+/// ascending.
+fn private_nodes(
+    graph: &Graph,
+    roots: &[NodeId],
+    nodes: &[NodeId],
+    root: NodeId,
+    inputs: &Inputs,
+) -> Vec<NodeId> {
+    let mut shared: FxHashSet<NodeId> = roots.iter().copied().collect();
+    let mut read: FxHashSet<NodeId> = FxHashSet::default();
+    let (mut private, mut readers) = (Vec::new(), 0);
+    // Readers have greater ids, so all readers of a node come before it here.
+    for &id in nodes.iter().rev() {
+        let is_private = id == root || (read.contains(&id) && !shared.contains(&id));
+        if is_private {
+            private.push(id);
+        }
+        for operand in reads(graph, id, inputs) {
+            readers += usize::from(operand == root);
+            if is_private { &mut read } else { &mut shared }.insert(operand);
+        }
+    }
+    private.reverse();
+    if readers == 1 { private } else { Vec::new() }
+}
