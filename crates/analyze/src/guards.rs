@@ -1,23 +1,25 @@
 //! Guards: cheap lower bounds of operands that cost much.
 //!
-//! The exact signed distance to a solid is at least the signed distance to any box that contains
-//! the solid, on both sides: a ball around a point outside the box does not reach the solid, and a
-//! ball within the solid lies within the box.
+//! A box that contains a solid is nowhere farther away than the solid. So a field that is the exact
+//! distance outside is at least the signed distance to the box. Within the solid it is, too: no
+//! point of the solid is deeper in it than in the box, and the field never exceeds the depth.
 
 use sdfc_graph::{Bounds, Dim, ExpandError, Expander, Graph, Guard, NodeId, reachable};
 
 use crate::analytic::operands::{MarchedOperand, bounding_shape};
+use crate::certify::promise::Promise;
 use crate::certify::quality::Qualities;
 use crate::cost::cost;
 
-/// The least number of operations of a guarded operand. The distance to a box takes 15.
-const LEAST_OPERATIONS: usize = 150;
+/// The least number of operations of a guarded operand, loops in full. The distance to a box takes
+/// 15, and some software drivers run both sides of a branch.
+const LEAST_OPERATIONS: usize = 200;
 /// Largest number of guards. Each is a branch.
 const MAX_GUARDS: usize = 16;
 /// The fraction of its size by which a box is enlarged: more than the rounding errors of f32.
 const MARGIN: f64 = 1e-5;
 
-/// The guards of the operands whose field is exact and bounded. `fields` are the roots that the
+/// The guards of the operands whose field is exact outside and bounded. `fields` are the roots that the
 /// guards are for, `values` the fields of the operands in the same graph.
 pub(crate) fn guards(
     graph: &mut Graph,
@@ -30,9 +32,10 @@ pub(crate) fn guards(
     let mut guards = Vec::new();
     let kept = reachable(graph, fields);
     for (operand, &value) in operands.iter().zip(values) {
-        let is_exact =
-            qualities.get(operand.shape).is_some_and(|quality| quality.sides.is_exact());
-        let is_wanted = is_exact
+        let is_above_box = qualities.get(operand.shape).is_some_and(|quality| {
+            quality.sides.outside == Promise::Exact && quality.sides.is_bound()
+        });
+        let is_wanted = is_above_box
             && kept.binary_search(&value).is_ok()
             && cost(graph, &[value]).operations >= LEAST_OPERATIONS;
         if !is_wanted || guards.len() == MAX_GUARDS {
