@@ -4,7 +4,7 @@
 //! distance outside is at least the signed distance to the box. Within the solid it is, too: no
 //! point of the solid is deeper in it than in the box, and the field never exceeds the depth.
 
-use sdfc_graph::{Bounds, Dim, ExpandError, Expander, Graph, Guard, NodeId, reachable};
+use sdfc_graph::{Bounds, Dim, ExpandError, Expander, Graph, Guard, NodeId, ShapeId, reachable};
 
 use crate::analytic::operands::{MarchedOperand, bounding_shape};
 use crate::certify::promise::Promise;
@@ -19,8 +19,8 @@ const MAX_GUARDS: usize = 16;
 /// The fraction of its size by which a box is enlarged: more than the rounding errors of f32.
 const MARGIN: f64 = 1e-5;
 
-/// The guards of the operands whose field is exact outside and bounded. `fields` are the roots that the
-/// guards are for, `values` the fields of the operands in the same graph.
+/// The guards of the operands whose field is exact outside and bounded, with their shapes. `fields`
+/// are the roots that the guards are for, `values` the fields of the operands in the same graph.
 pub(crate) fn guards(
     graph: &mut Graph,
     expander: &mut Expander,
@@ -28,7 +28,7 @@ pub(crate) fn guards(
     operands: &[MarchedOperand],
     values: &[NodeId],
     fields: &[NodeId],
-) -> Result<Vec<Guard>, ExpandError> {
+) -> Result<Vec<(ShapeId, Guard)>, ExpandError> {
     let mut guards = Vec::new();
     let kept = reachable(graph, fields);
     for (operand, &value) in operands.iter().zip(values) {
@@ -42,7 +42,7 @@ pub(crate) fn guards(
             continue;
         }
         if let Some(bound) = distance_to_box(graph, expander, bounds, operand)? {
-            guards.push(Guard { operand: value, bound });
+            guards.push((operand.shape, Guard { operand: value, bound }));
         }
     }
     Ok(guards)

@@ -135,7 +135,9 @@ fn flatten(
         program.loop_bounds = looped_bounds(graph, &mut bounds, root);
     }
     let known = (&mut bounds, &qualities);
-    program.guards = guards(graph, &mut expander, known, &operands.marched, marched, &fields)?;
+    let guards = guards(graph, &mut expander, known, &operands.marched, marched, &fields)?;
+    let guarded;
+    (guarded, program.guards) = guards.into_iter().unzip();
     let queries = ray_queries(graph, &mut expander, &mut bounds, &operands)?;
     program.rays = ray_functions(&operands, &fields, queries);
     let Rays { first_hit, marched, clip, copies, .. } = program.rays;
@@ -152,6 +154,7 @@ fn flatten(
         marched_cost: cost(graph, copies.or(marched).as_slice()),
         analytic: operands.analytic.iter().map(|operand| operand.shape).collect(),
         marched: operands.marched.iter().map(|operand| operand.shape).collect(),
+        guarded,
         shapes: shape_reports(graph, &qualities, root, &field.divided),
         uncertified: field.uncertified,
         inexact_operators: inexact_operators(graph, &qualities, root),

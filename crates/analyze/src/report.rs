@@ -37,6 +37,8 @@ pub struct Report {
     pub analytic: Vec<ShapeId>,
     /// The marched operands.
     pub marched: Vec<ShapeId>,
+    /// The marched operands that shaders evaluate only near their boxes.
+    pub guarded: Vec<ShapeId>,
     /// All shapes of the scene, children before parents.
     pub shapes: Vec<ShapeReport>,
     /// The parts without a known Lipschitz constant; empty for a certified scene.

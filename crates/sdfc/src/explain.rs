@@ -38,6 +38,7 @@ impl Scene {
             loops: report.loops.iter().map(|rolled| rolled.operands).collect(),
             analytic: self.names(&report.analytic),
             marched: self.names(&report.marched),
+            guarded: self.names(&report.guarded),
             ops_per_ray: report.ray_cost.operations,
             ops_per_step: report.marched_cost.operations,
             spirv_instructions: field.map_or(0, |cost| cost.instructions as usize),

@@ -34,6 +34,8 @@ pub struct Explanation {
     pub analytic: Vec<String>,
     /// Shapes that `auto` marches.
     pub marched: Vec<String>,
+    /// Costly shapes that shaders evaluate only where the box around them is nearer than the rest.
+    pub guarded: Vec<String>,
     /// Arithmetic operations of the analytic pre-intersection, per ray.
     pub ops_per_ray: usize,
     /// Arithmetic operations of the marched operands, per step.
@@ -177,6 +179,9 @@ impl std::fmt::Display for Explanation {
         if !self.analytic.is_empty() {
             writeln!(f, "analytic            {}", listed(&self.analytic))?;
             writeln!(f, "marched             {}", listed(&self.marched))?;
+        }
+        if !self.guarded.is_empty() {
+            writeln!(f, "skipped far away    {}", listed(&self.guarded))?;
         }
         if self.ops_per_ray > 0 {
             writeln!(f, "operations of auto  {} per ray, analytic", self.ops_per_ray)?;

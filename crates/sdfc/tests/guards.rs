@@ -1,0 +1,147 @@
+//! Costly operands of a union that are evaluated only near their boxes: the bounds hold, and
+//! neither a value nor a picture changes.
+
+#![allow(clippy::expect_used, reason = "a test stops where it fails")]
+
+use libtest_mimic::{Arguments, Failed, Trial};
+use sdfc::{Compiler, FrameValues, Method, Scene, no_progress};
+use sdfc_codegen::{FieldOptions, field_module, render_module};
+use sdfc_graph::eval::Tape;
+use sdfc_graph::{NodeId, Program};
+use sdfc_render::{Gpu, HIT, Image, Pipeline, RenderOptions, View, testing, uniform_values};
+
+const SIZE: [u32; 2] = [96, 64];
+/// Points for each scene.
+const POINTS: usize = 4_000;
+/// Half the side of the box of points.
+const REACH: f64 = 2.5;
+/// How far the field of a text may be from the distance.
+const PRECISION: f64 = 5e-5;
+
+const WORD: &str = "text(\"sd\", size: 0.8, align: \"center\").extrude(0.2)";
+const CAMERA: &str = "camera(eye: [1.2, 1.1, 3], target: [0, 0.2, 0], fov: 40deg)\n\
+                      sun(direction: [1, 2, 1], shadow: soft(8))\n\
+                      ambient(strength: 0.3)\nambient_occlusion(radius: 0.5)\n";
+
+/// A test of a scene.
+type Test = fn(&Scene) -> Result<(), Failed>;
+
+const DRAWN: &str = "picture";
+const TESTS: [(&str, Test); 3] =
+    [("values", same_values), ("code", is_in_a_branch), (DRAWN, same_picture)];
+
+fn main() {
+    let outline = "polygon([for i in 0..60: (1 + 0.3 * cos(i)) * [cos(i * 6deg), sin(i * 6deg)]])";
+    let scenes = [
+        ("text over a floor", format!("{WORD}\nplane(y: -0.1)\n")),
+        (
+            "text, rotated and scaled",
+            format!("{WORD}.rotate(y: 30deg).scale(0.7)\nplane(y: -0.1)\n"),
+        ),
+        ("rounded text and a ball", format!("{WORD}.round(0.03)\nsphere(0.5).translate(x: 1)\n")),
+        ("two words", format!("{WORD}\n{WORD}.translate([0.3, 0.9, 0.2])\nplane(y: -0.1)\n")),
+        ("words alone", format!("{WORD}\n{WORD}.translate(y: 0.9)\n")),
+        ("an outline of many corners", format!("{outline}.extrude(0.4)\nplane(y: -1.4)\n")),
+        (
+            "text that a param moves",
+            format!("param s = 0.2 in -1..1\n{WORD}.translate(x: s)\nplane(y: -0.1)\n"),
+        ),
+    ];
+    let mut trials = Vec::new();
+    for (name, text) in scenes {
+        let text = text + CAMERA;
+        for (what, test) in TESTS {
+            let scene = text.clone();
+            let trial = Trial::test(format!("{what} of {name}"), move || test(&compiled(&scene)));
+            trials.push(trial.with_ignored_flag(what == DRAWN && testing::without_gpu()));
+        }
+    }
+    libtest_mimic::run(&Arguments::from_args(), trials).exit();
+}
+
+fn compiled(text: &str) -> Scene {
+    Compiler::new().compile("guarded.sdf", text).expect("compiles")
+}
+
+/// Points of a box, by a Kronecker sequence: they cover it evenly.
+fn points() -> impl Iterator<Item = [f64; 3]> {
+    let steps = [0.819_172_513, 0.671_043_607, 0.549_700_478];
+    (0..POINTS)
+        .map(move |index| steps.map(|step| REACH * (2.0 * (step * index as f64).fract() - 1.0)))
+}
+
+fn values(program: &Program, roots: &[NodeId], frame: &FrameValues) -> Vec<Vec<f64>> {
+    let tape = Tape::new(&program.graph, roots).expect("the field is flat");
+    let mut evaluator = tape.prepare::<f64>(frame);
+    points().map(|point| evaluator.eval(point).iter().map(|lanes| lanes[0]).collect()).collect()
+}
+
+fn same_values(scene: &Scene) -> Result<(), Failed> {
+    let (program, frame) = (scene.program(), FrameValues::defaults(scene.params()));
+    if program.guards.is_empty() {
+        return Err("nothing is guarded".into());
+    }
+    let distance = program.distance.ok_or("nothing is drawn")?;
+    for guard in &program.guards {
+        let pairs = values(program, &[guard.bound, guard.operand], &frame);
+        for (point, pair) in points().zip(pairs) {
+            if pair[0] > pair[1] + PRECISION {
+                return Err(format!("at {point:?} the box is at {pair:?}").into());
+            }
+        }
+    }
+    let guarded = program.guarded();
+    let new = guarded.distance.ok_or("nothing is drawn")?;
+    let [old, new] = [(program, distance), (&guarded, new)]
+        .map(|(program, root)| values(program, &[root], &frame));
+    for (point, (old, new)) in points().zip(old.iter().zip(new)) {
+        if (old[0] - new[0]).abs() > PRECISION {
+            return Err(format!("at {point:?} {} became {}", old[0], new[0]).into());
+        }
+    }
+    Ok(())
+}
+
+/// The operand's loops are written in a branch, and nothing of them outside.
+fn is_in_a_branch(scene: &Scene) -> Result<(), Failed> {
+    let options = FieldOptions { gradient: false, material: false, ..FieldOptions::default() };
+    let text = field_module(scene.program(), &options)?.wgsl()?;
+    let body = text.split_once("fn sdf_distance").ok_or("there is no distance")?.1;
+    let before = body.split_once("least = ").ok_or("there is no branch")?.0;
+    let words = scene.program().guards.len();
+    let branches = body.matches("var least").count();
+    // Without another operand, the first of them is always evaluated.
+    let guarded = if scene.program().rays.analytic.is_none() { words - 1 } else { words };
+    if branches != guarded {
+        return Err(format!("{branches} branches for {guarded} operands").into());
+    }
+    if guarded == words && before.contains("loop {") {
+        return Err("a loop precedes the first branch".into());
+    }
+    Ok(())
+}
+
+fn same_picture(scene: &Scene) -> Result<(), Failed> {
+    let plain = Program { guards: Vec::new(), ..scene.program().clone() };
+    let [guarded, plain] = [picture(scene, scene.program())?, picture(scene, &plain)?];
+    let hits = plain.pixels().iter().filter(|pixel| pixel.status == HIT).count();
+    if hits < 400 {
+        return Err(format!("only {hits} pixels show something").into());
+    }
+    for (place, (a, b)) in guarded.pixels().iter().zip(plain.pixels()).enumerate() {
+        let color = a.color.iter().zip(b.color).any(|(a, b)| (a - b).abs() > 1.0 / 255.0);
+        if a.status != b.status || color || (a.depth - b.depth).abs() > 1e-4 {
+            return Err(format!("at {place}, {a:?} and {b:?}").into());
+        }
+    }
+    Ok(())
+}
+
+fn picture(scene: &Scene, program: &Program) -> Result<Image, Failed> {
+    let (gpu, frame) = (Gpu::new()?, FrameValues::defaults(scene.params()));
+    let view = View::new(program, &frame, scene.bounds_at(&frame), SIZE)?;
+    let shader = render_module(program, Method::Auto)?;
+    let uniforms = uniform_values(program, &frame);
+    let pipeline = Pipeline::new(&gpu, shader, uniforms.len())?;
+    Ok(pipeline.render(&view, &uniforms, &RenderOptions::default(), &mut no_progress)?.image)
+}
