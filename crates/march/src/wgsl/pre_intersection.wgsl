@@ -76,8 +76,7 @@ fn combined(ray: Ray, known: PreIntersection, marched: Trace) -> Trace {
     var result = marched;
     result.t += known.start;
     result.evaluations++;
-    if marched.status == MISS {
-        // Where the field is NaN so is t, and both comparisons are false.
+    if marched.status == MISS && !is_nan(marched.t) {
         if marched.t > known.end - known.start && known.hit <= ray.t_max {
             result = Trace(known.hit, HIT, result.evaluations);
         } else if marched.t <= ray.t_max {

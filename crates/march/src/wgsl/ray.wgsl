@@ -37,6 +37,13 @@ struct Trace {
 // Relative rounding error of a position: eight units in the last place, for sums of a few terms.
 const ROUNDING: f32 = 1e-6;
 
+// True for NaN. A compiler may assume that no number is NaN: NVIDIA's turned
+// `select(t, limit, t > limit)` into a minimum, which is `limit` where t is NaN. A test of the bits
+// stays as it is.
+fn is_nan(number: f32) -> bool {
+    return (bitcast<u32>(number) & 0x7fffffffu) > 0x7f800000u;
+}
+
 fn ray_point(ray: Ray, t: f32) -> vec3f {
     return ray.origin + t * ray.direction;
 }
