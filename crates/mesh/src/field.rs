@@ -119,6 +119,8 @@ impl Field {
 const FEW_OPERATIONS: usize = 16;
 /// A specialised tape is used if it has at most this fraction of the operations.
 const SHORTER: f64 = 0.75;
+/// The same for a tape with loops, whose conditions leave out most iterations over a small box.
+const SHORTER_THAN_LOOPS: f64 = 0.25;
 /// A box is this many times smaller than the one that the tape in use was made for before the tape
 /// is specialised again.
 const ZOOM: f64 = 3.0;
@@ -165,18 +167,18 @@ impl<'f> LocalField<'f> {
         self.short.as_deref().unwrap_or(self.whole)
     }
 
-    /// Returns the field in a cube that is grown by a margin. A field with loops stays as it is:
-    /// their conditions leave out most iterations over a small box.
+    /// Returns the field in a cube that is grown by a margin.
     pub(crate) fn around(self, [lo, hi]: [Vec3; 2], margin: f64) -> Self {
         let side = hi[0] - lo[0];
         let operations = self.tape().operations();
         let has_few = operations < FEW_OPERATIONS;
-        if has_few || side * ZOOM > self.side || self.whole.has_loops() {
+        if has_few || side * ZOOM > self.side {
             return self;
         }
         let grown = [lo.map(|x| x - margin), hi.map(|x| x + margin)];
         let coordinates = placed(self.plane, Prism::aligned(grown).coordinates());
-        let is_short = |tape: &Tape| tape.operations() as f64 <= SHORTER * operations as f64;
+        let most = if self.tape().has_loops() { SHORTER_THAN_LOOPS } else { SHORTER };
+        let is_short = |tape: &Tape| tape.operations() as f64 <= most * operations as f64;
         let found = self.tape().specialized(self.frame, coordinates).filter(is_short);
         Self { short: found.map(Arc::new).or(self.short), side, ..self }
     }
