@@ -209,3 +209,11 @@ fn a_plane_that_meets_no_inside_is_refused() {
     let result = contour("plane(y: 0)", [0.0, 0.0, 1.0], 0.0, 0.01);
     assert!(matches!(result, Err(Error::Mesh(MeshError::Unbounded { .. }))), "{result:?}");
 }
+
+/// The round strokes of an 8 have places where many arcs are equally near.
+#[test]
+fn contours_of_text_are_proven() {
+    let contour = contour("text(\"8\", size: 0.5)", [0.0, 0.0, 1.0], 0.0, 0.001).unwrap();
+    assert_eq!(contour.paths.len(), 3);
+    assert!(contour.certificate.is_proven, "{:?}", contour.certificate);
+}
