@@ -2,7 +2,6 @@
 
 use crate::graph::Graph;
 use crate::node::{Binary, Node, NodeId, Ternary};
-use crate::program::Program;
 use crate::walk::operands;
 
 /// An operand of a minimum that costs much, and a cheap lower bound of it.
@@ -30,23 +29,9 @@ pub struct GuardedMinimum {
 /// Largest number of operands of a minimum in which guarded ones are sought.
 const MAX_OPERANDS: usize = 4096;
 
-impl Program {
-    /// The program with fields that have the same values, but evaluate a guarded operand only where
-    /// its bound is less than all operands before it. Shaders do that by branches.
-    ///
-    /// The gradient and the materials stay: they are evaluated once for each ray.
-    pub fn guarded(&self) -> Self {
-        let mut program = self.clone();
-        let graph = &mut program.graph;
-        let fields = [&mut program.distance, &mut program.rays.marched];
-        for field in fields.into_iter().flatten() {
-            *field = guarded_field(graph, *field, &self.guards);
-        }
-        program
-    }
-}
-
-fn guarded_field(graph: &mut Graph, field: NodeId, guards: &[Guard]) -> NodeId {
+/// A field with the same values that evaluates a guarded operand only where its bound is less than
+/// all operands before it.
+pub(crate) fn guarded_field(graph: &mut Graph, field: NodeId, guards: &[Guard]) -> NodeId {
     if guards.is_empty() {
         return field;
     }

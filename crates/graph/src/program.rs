@@ -5,7 +5,7 @@ use rustc_hash::FxHashMap;
 use crate::FAR;
 use crate::enclose::{slope_enclosure, tight_enclosure};
 use crate::graph::Graph;
-use crate::guard::Guard;
+use crate::guard::{Guard, guarded_field};
 use crate::loops::SkipCondition;
 use crate::node::{Dim, NodeId};
 use crate::scene::{Param, Settings};
@@ -147,6 +147,19 @@ impl Program {
             program.slope_range = ends.map(|ends| graph.compose(&ends));
         }
         program.uniforms = uniforms(&program.graph, &program.roots());
+        program
+    }
+
+    /// The program with fields that have the same values, but evaluate a guarded operand only where
+    /// its bound is less than all operands before it. Shaders do that by branches.
+    ///
+    /// The gradient and the materials stay: they are evaluated once for each ray.
+    pub fn guarded(&self) -> Self {
+        let mut program = self.clone();
+        let graph = &mut program.graph;
+        for field in [&mut program.distance, &mut program.rays.marched].into_iter().flatten() {
+            *field = guarded_field(graph, *field, &self.guards);
+        }
         program
     }
 
