@@ -6,6 +6,7 @@
 
 use sdfc_graph::{Bounds, Dim, ExpandError, Expander, Graph, Guard, NodeId, ShapeId, reachable};
 
+use crate::analytic::boxes::MARGIN;
 use crate::analytic::operands::{MarchedOperand, bounding_shape};
 use crate::certify::promise::Promise;
 use crate::certify::quality::Qualities;
@@ -16,8 +17,6 @@ use crate::cost::cost;
 const LEAST_OPERATIONS: usize = 200;
 /// Largest number of guards. Each is a branch.
 const MAX_GUARDS: usize = 16;
-/// The fraction of its size by which a box is enlarged: more than the rounding errors of f32.
-const MARGIN: f64 = 1e-5;
 
 /// The guards of the operands whose field is exact outside and bounded, with their shapes. `fields`
 /// are the roots that the guards are for, `values` the fields of the operands in the same graph.

@@ -136,8 +136,8 @@ fn flatten(
     }
     let known = (&mut bounds, &qualities);
     let guards = guards(graph, &mut expander, known, &operands.marched, marched, &fields)?;
-    let guarded;
-    (guarded, program.guards) = guards.into_iter().unzip();
+    let (guarded, guards) = guards.into_iter().unzip();
+    program.guards = guards;
     let queries = ray_queries(graph, &mut expander, &mut bounds, &operands)?;
     program.rays = ray_functions(&operands, &fields, queries);
     let Rays { first_hit, marched, clip, copies, .. } = program.rays;

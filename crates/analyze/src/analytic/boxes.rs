@@ -3,7 +3,7 @@
 use sdfc_graph::{FAR, Graph, NodeId, Stage};
 
 /// The fraction of its size by which a box is enlarged: more than the rounding errors of f32.
-const MARGIN: f64 = 1e-5;
+pub(crate) const MARGIN: f64 = 1e-5;
 /// Smallest absolute value of a component of a direction; smaller ones are replaced by it.
 const MIN_SLOPE: f64 = 1e-12;
 

@@ -76,9 +76,13 @@ impl Body {
         self.push(Statement::Store { pointer, value });
     }
 
-    /// Opens a loop: the next statements are its body.
-    pub(crate) fn open_loop(&mut self) {
+    /// Opens the block of a loop or a branch: the next statements are in it.
+    pub(crate) fn open_block(&mut self) {
         self.outer.push(std::mem::take(&mut self.function.body));
+    }
+
+    fn close_block(&mut self) -> Block {
+        std::mem::replace(&mut self.function.body, self.outer.pop().unwrap_or_default())
     }
 
     /// Leaves the loop if the condition is true.
@@ -89,19 +93,14 @@ impl Body {
 
     /// Closes the loop. Values that were computed within can no longer be used.
     pub(crate) fn close_loop(&mut self) {
-        let body = std::mem::replace(&mut self.function.body, self.outer.pop().unwrap_or_default());
+        let body = self.close_block();
         self.push(Statement::Loop { body, continuing: Block::new(), break_if: None });
     }
 
-    /// Opens the block of a branch: the next statements run only where its condition is true.
-    pub(crate) fn open_branch(&mut self) {
-        self.outer.push(std::mem::take(&mut self.function.body));
-    }
-
-    /// Closes the branch. Values that were computed within can no longer be used.
+    /// Closes a branch, whose block runs only where the condition is true. Values that were
+    /// computed within can no longer be used.
     pub(crate) fn close_branch(&mut self, condition: Value) {
-        let accept =
-            std::mem::replace(&mut self.function.body, self.outer.pop().unwrap_or_default());
+        let accept = self.close_block();
         self.push(Statement::If { condition, accept, reject: Block::new() });
     }
 

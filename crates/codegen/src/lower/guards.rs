@@ -23,7 +23,7 @@ impl Lowering<'_> {
     ) -> (Branches, Vec<NodeId>) {
         let graph = &self.program.graph;
         let mut branches = Branches::default();
-        // What an iteration of a loop computes for its condition, the rest of it may read.
+        // The rest of an iteration may read what was computed for its condition.
         if self.iterations.iter().any(Option::is_some) {
             return (branches, nodes.to_vec());
         }
@@ -60,7 +60,7 @@ impl Lowering<'_> {
         let variable = self.body.variable("least", ty);
         let (condition, without) = (self.value(minimum.condition)?, self.value(minimum.without)?);
         self.body.store(variable, without);
-        self.body.open_branch();
+        self.body.open_block();
         let matrices = self.matrices.clone();
         self.visit(&[minimum.with_operand], within)?;
         let with_operand = self.value(minimum.with_operand)?;

@@ -67,7 +67,7 @@ impl Lowering<'_> {
         self.body.store(counter, first);
         let state = self.state(&looped.init)?;
 
-        self.body.open_loop();
+        self.body.open_block();
         let matrices = self.matrices.clone();
         let counted = self.body.load(counter, name);
         let past = self.body.binary(BinaryOperator::GreaterEqual, counted, limit);
