@@ -262,6 +262,11 @@ codes! {
          of regions. \
          `.extrude(0.2)` makes a solid of a region."
         "remove it, or draw shapes of the other kind";
+    BRIGHT_COLOUR "W0608" "Colour component above 1"
+        "The components of `rgb` are sRGB values from 0 to 1. For values from 0 to 255, divide by \
+         255 or write hexadecimal digits: `rgb(1, 0.5, 0)` is `#ff8000`. Light that is brighter \
+         than white, for `emission` or a sky, is written with `linear_rgb`."
+        "divide by 255, or write `linear_rgb` for amounts of light";
 }
 
 #[cfg(test)]

@@ -42,6 +42,7 @@ pub mod inspect;
 pub mod library;
 pub mod live_literals;
 pub mod outline;
+pub mod polygon;
 mod reachability;
 pub mod receivers;
 pub mod reference;

@@ -31,7 +31,7 @@ const LEAST_PART: f64 = 1e-4;
 /// more.
 const MAX_PAIRS: usize = 4096;
 /// Largest turn of a smooth joint, in radians.
-const SMOOTH: f64 = 0.5;
+pub(crate) const SMOOTH: f64 = 0.5;
 
 /// The boundary of the area that outlines fill, in the order of the outlines or its reverse.
 pub fn boundary(mut outlines: Vec<Curve>) -> Vec<Piece> {

@@ -83,6 +83,7 @@ const ROWS: &[(&str, &str)] = &[
     ("[for x in list: f(x)]", "map listcomprehension"),
     ("[for x in list: x, y]", "append push pushback concat cons"),
     ("len", "count numelements"),
+    ("0..n", "range linspace"),
     ("iterate", "fold reduce loop while"),
     // Words that begin a line.
     ("fn name(x) = ...", "function def func lambda module"),
@@ -139,6 +140,24 @@ const ABSENT: &[(&str, &str, &str)] = &[
         "minkowski",
         "there is no Minkowski sum: `a.round(0.1)` is that of a shape and a sphere",
         "a.round(0.1)",
+    ),
+    (
+        "bevel",
+        "there is no bevel of a shape's edges: `a.round(0.1)` rounds them, `intersection(a, b, \
+         blend: chamfer(0.1))` cuts the edges between two shapes",
+        "a.round(0.1)",
+    ),
+    (
+        "gear",
+        "there is no gear: `union(circle(0.5), rect([0.2, 0.1]).translate(x: 0.5).polar_repeat(12))` \
+         has twelve teeth",
+        "union(circle(0.5), rect([0.2, 0.1]).translate(x: 0.5).polar_repeat(12))",
+    ),
+    (
+        "thread",
+        "there is no screw thread: `union(cylinder(0.4, h: 2), helix(0.4, 0.05, pitch: 0.15, h: 2))` \
+         has the shape of one",
+        "union(cylinder(0.4, h: 2), helix(0.4, 0.05, pitch: 0.15, h: 2))",
     ),
 ];
 
@@ -258,7 +277,7 @@ mod tests {
     #[test]
     fn every_row_begins_with_a_known_name() {
         let entries = reference::entries();
-        let known = ["a", "x", "if", "[for", "fn", "let", "param", "import"];
+        let known = ["a", "x", "0..n", "if", "[for", "fn", "let", "param", "import"];
         for (here, _) in ROWS.iter().filter(|(here, _)| !here.starts_with('#')) {
             let first = here.split([' ', '(']).next().unwrap_or_default();
             assert!(
@@ -274,8 +293,9 @@ mod tests {
         let mut all: Vec<&str> = ROWS.iter().flat_map(|(_, others)| others.split(' ')).collect();
         for name in &all {
             assert_eq!(plain(name), *name);
-            // A clause, such as `intersect`, is no name that a scene can call.
-            let mut names = entries.iter().filter(|entry| entry.kind != "syntax");
+            // A clause, such as `intersect`, and a type are no names that a scene can call.
+            let is_called = |kind: &str| !matches!(kind, "syntax" | "type");
+            let mut names = entries.iter().filter(|entry| is_called(&entry.kind));
             let is_free = names.all(|entry| plain(&entry.name) != *name);
             assert!(is_free, "`{name}` exists here now: remove it from the names of other tools");
         }

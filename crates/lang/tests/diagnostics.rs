@@ -56,6 +56,7 @@ fn wrong_names_are_reported() {
         "fn f(a, a) = a\nsphere(f(1, 2))",
         "sphere(1).smooooth(2).tralate(x: 1)",
         "sphere(1).translate(1, 2, 3)\ncircle(1).translate(1, 2)\nsphere(1).scale(1, 2, 3)",
+        "box(1).bevel(0.1)\ngear(12)\nthread()\nunion(for i in range(3): sphere(i))",
         "cube(1)\nsphere(PI)\nsdRoundCone(1)\nsmin(sphere(1), box(1), 0.1)\nsphere(1).move(x: 1).color(red)\nlight()\nfn f(x: float) = x",
     ]));
 }
@@ -88,6 +89,7 @@ fn wrong_calls_are_reported() {
     assert_findings!(all(&[
         "sphere(1, 2)\nsphere(radius: 1)\nsphere(r: 1, r: 2)\nsphere(r: 1, 2)",
         "plane().color(checker(size: 1))",
+        "polygon([0, 0], [1, 0], [0, 1]).extrude(0.2)\nsphere(1).sweep([0, 0, 0], [1, 0, 0])",
         "union(sphere(1), box(1), smooth(0.1))",
         "let color = #f00\nsphere(1).color(color)",
         "let union = 3\nfn difference(a) = a\n(sphere(1) | box(1)) - sphere(difference(union))",
@@ -163,12 +165,13 @@ fn wrong_types_are_reported() {
         "let v = [1, 2]\nsphere(v.z).round(v.length).round((1..2).x).round(v.xw)",
         "let v = [1, 2]\nsphere(v[0.5]).round(1[0]).round([for i in 0..3: i][0..1.5])",
         "let a = [for i in 5: i]\nlet b = [for i in true: i]\nsphere(1)",
-        "union(sphere(1), sphere(2), blend: 0.1)\nunion(sphere(1), sphere(2), blend: fn(a) = a)\nunion(sphere(1), sphere(2), blend: checker)",
+        "union(sphere(1), sphere(2), blend: 0.25)\nunion(sphere(1), sphere(2), blend: fn(a) = a)\nunion(sphere(1), sphere(2), blend: checker)",
         "fn f(n: int) = if n == 0 { 0 } else { f(n - 1) }\nsphere(f(3))",
         "fn a(n) = b(n)\nfn b(n) = a(n)\nsphere(a(1))",
         "let f = min\nlet g = sphere\nlet h = union\nsphere(1)",
         "let s = iterate(3.5, 0, fn(s) = s + 1)\nlet t = iterate(3, 0, fn(s) = [s, 1])\nlet u = iterate(3, true, fn(s) = s)\nlet v = iterate(3, 0, fn(s, i, j) = s)\nsphere(1)",
         "let m = material(color: 1)\nlet n = material(shine: 1)\nlet o = m.with(roughness: true)\nsphere(1).paint(#fff)",
+        "box(1).fillet(0.1)\nsphere(1).material(color: #f00)",
         "solid a() exact if 1\n lipschitz [1, 2]\n bounds 1\n require 2, \"no\"\n material true\n = [1, 2, 3]\na()",
     ]));
 }

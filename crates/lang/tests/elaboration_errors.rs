@@ -23,6 +23,9 @@ shows! {
     a_default_outside_the_range_of_its_param_is_an_error: "param r = 3 in 0..1\nsphere(r)\n";
     a_false_requirement_is_an_error: "plane(normal: [0, 0, 0])\n";
     a_requirement_that_a_param_violates_is_an_error: "param s = 0.5 in 0..1\nsphere(1).scale(s)\n";
+    a_requirement_that_a_range_without_a_statement_violates_is_an_error:
+        "param s = 0.5\nparam a = -20deg\nbox(1).scale(s)\nbox(1).rotate(y: a).scale(-a / 1rad)\n";
+    colours_above_1_are_warned_of: "sphere(1).color(rgb(255, 128, 0)).emission(rgb(2, 1.5, 0))\n";
     a_false_requirement_of_the_scene_is_an_error:
         "solid ring(inner: length, outer: length)\n  require inner < outer, \"the inner radius is the smaller one\"\n  = max(length(p) - outer, inner - length(p))\nring(1, 0.5)\n";
     a_division_by_zero_is_an_error: "let n = 0\nsphere(1 / n)\n";

@@ -227,15 +227,48 @@ fn plain() -> Vec<Case> {
         // A loop within a loop; the inner one is empty.
         filled(
             "polygon([for i in 0..150: (0.2 + 0.5 * cos(2.4deg * i)) * [cos(2.4deg * i), sin(2.4deg * i)]])",
-            (0..150)
-                .map(|i| (2.4 * f64::from(i)).to_radians())
-                .map(|t| [t.cos(), t.sin()].map(|part| (0.2 + 0.5 * t.cos()) * part))
-                .collect(),
+            limacon(),
+        ),
+        // A bridge leads to a hole: the edges there and back are no boundary.
+        Case {
+            text: "polygon([[-0.6, -0.6], [0.6, -0.6], [0.6, 0.6], [-0.6, 0.6], [-0.6, -0.6], \
+                   [-0.2, -0.2], [-0.2, 0.2], [0.2, 0.2], [0.2, -0.2], [-0.2, -0.2]])",
+            expected: Filled(vec![square(0.6), square(0.2)]),
+        },
+        // Two squares share a part of a side.
+        filled(
+            "polygon([[-0.5, -0.4], [0, -0.4], [0, 0], [0.5, 0], [0.5, 0.5], [0, 0.5], [0, 0], \
+             [0, 0.3], [-0.5, 0.3]])",
+            vec![
+                [-0.5, -0.4],
+                [0.0, -0.4],
+                [0.0, 0.0],
+                [0.5, 0.0],
+                [0.5, 0.5],
+                [0.0, 0.5],
+                [0.0, 0.3],
+                [-0.5, 0.3],
+            ],
+        ),
+        filled(
+            "polygon([[-0.6, -0.5], [-0.1, -0.5], [0, 0.2], [0.1, -0.5], [0.6, -0.5], [0, 0.2]])",
+            vec![[-0.6, -0.5], [-0.1, -0.5], [0.0, 0.2], [0.1, -0.5], [0.6, -0.5], [0.0, 0.2]],
         ),
         filled("staircase([1.2, 0.8], n: 4)", staircase([1.2, 0.8], 4)),
         filled("staircase([0.3, 1.4], n: 7)", staircase([0.3, 1.4], 7)),
         filled("staircase([1, 0.2], n: 1)", staircase([1.0, 0.2], 1)),
     ]
+}
+
+fn square(half: f64) -> Vec<Point> {
+    vec![[-half, -half], [half, -half], [half, half], [-half, half]]
+}
+
+fn limacon() -> Vec<Point> {
+    (0..150)
+        .map(|i| (2.4 * f64::from(i)).to_radians())
+        .map(|t| [t.cos(), t.sin()].map(|part| (0.2 + 0.5 * t.cos()) * part))
+        .collect()
 }
 
 fn plus(reach: f64, half: f64) -> Vec<Point> {
@@ -504,6 +537,20 @@ fn texts() -> Vec<Case> {
     ]
 }
 
+/// With a param the sign of a polygon comes from the crossings of a ray.
+fn polygons_with_params() -> Vec<Case> {
+    vec![
+        filled(
+            "param x = 0.1\npolygon([[-0.5, -0.5], [0.6, -0.3], [x, 0], [0.3, 0.5], [-0.4, 0.3]])",
+            vec![[-0.5, -0.5], [0.6, -0.3], [0.1, 0.0], [0.3, 0.5], [-0.4, 0.3]],
+        ),
+        filled(
+            "param a = 0.2\npolygon([for i in 0..150: (a + 0.5 * cos(2.4deg * i)) * [cos(2.4deg * i), sin(2.4deg * i)]])",
+            limacon(),
+        ),
+    ]
+}
+
 fn cases() -> Vec<Case> {
     plain().into_iter().chain(round()).chain(texts()).collect()
 }
@@ -511,7 +558,7 @@ fn cases() -> Vec<Case> {
 #[test]
 fn the_distance_of_a_region_is_that_to_its_outline() {
     let mut wrong = Vec::new();
-    for Case { text, expected } in cases() {
+    for Case { text, expected } in cases().into_iter().chain(polygons_with_params()) {
         let drawn = format!("{text}.extrude(10)");
         let field = Field::drawn(&drawn);
         let mut field = field.evaluator();

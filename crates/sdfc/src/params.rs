@@ -62,6 +62,9 @@ fn known_params(name: &str, known: &[String]) -> String {
     if !name.is_empty() && !in_files.is_empty() {
         return format!("write {}", in_files.join(" or "));
     }
+    if name == "time" {
+        return "on the command line, `--time` sets the time".to_owned();
+    }
     if let Some(near) = sdfc_lang::nearest_name(name, known.iter().map(String::as_str)) {
         return format!("did you mean `{near}`?");
     }

@@ -84,8 +84,11 @@ pub(crate) fn color(text: &str, span: Span) -> Checked<[u8; 4]> {
     let written = text.len().saturating_sub(1);
     let wrong = |message: String| Diagnostic::error(Code::BAD_COLOUR, span, message);
     if digits.len() != written {
-        let problem = wrong(format!("`{text}` is not a colour"))
-            .help("after `#` come hexadecimal digits: 0 to 9 and a to f");
+        let problem = wrong(format!("`{text}` is not a colour")).help(match text {
+            "#include" => "write import name from \"file.sdf\"",
+            "#define" => "write let name = ..., or fn name(x) = ...",
+            _ => "after `#` come hexadecimal digits: 0 to 9 and a to f",
+        });
         return ([0; 4], Some(problem));
     }
     match digits[..] {

@@ -81,7 +81,10 @@ pub const SIGNATURES: &[&str] = &[
 ];
 
 /// Names that the generator leaves out.
-pub const LEFT_OUT: [(&str, &str); 1] = [("glyph_curves", "only `text` of the library uses it")];
+pub const LEFT_OUT: [(&str, &str); 2] = [
+    ("glyph_curves", "only `text` of the library uses it"),
+    ("polygon_edges", "only `polygon` of the library uses it"),
+];
 
 /// Returns true if the arguments of a kernel function have names.
 pub fn is_named(function: &str) -> bool {

@@ -5,6 +5,7 @@ use sdfc_syntax::ast::{self, DeclKind};
 
 use super::call::{Callee, Given, Value, count};
 use super::decl::ParameterSignature;
+use super::kernel::Builtin;
 use super::names::{Entry, Found, is_private};
 use super::types::show;
 use super::written::written;
@@ -43,6 +44,45 @@ impl<'a> Checker<'a> {
             [one] => found.help(format!("`{one}` has this parameter")),
             [one, other, ..] => found.help(format!("`{one}` and `{other}` have this parameter")),
         }
+    }
+
+    /// The diagnostic for a call on a shape, as in `box(1).fillet(0.1)`, of something that makes
+    /// no shape: a blend or a material.
+    pub(super) fn no_operator(
+        &mut self,
+        callee: Callee,
+        base: &mut Given<'a>,
+    ) -> Option<Diagnostic> {
+        let name = callee.name;
+        let (what, help) = match self.look_up(name)? {
+            Found::Builtin(Builtin::Material) => (
+                "a material",
+                ["to give a shape a material, write a.paint(material(...))"].as_slice(),
+            ),
+            Found::Decls(decls) if decls.iter().any(|decl| self.is_blend(*decl)) => (
+                "a blend",
+                [
+                    "between two shapes, write union(a, b, blend: ...)",
+                    "the edges of one shape are rounded by a.round(0.1)",
+                ]
+                .as_slice(),
+            ),
+            _ => return None,
+        };
+        if !matches!(self.look_at(base), Type::Shape(_)) {
+            return None;
+        }
+        let message = format!("`{name}` makes {what}; it is not called on a shape");
+        let found = Diagnostic::error(Code::TYPE_MISMATCH, callee.at, message);
+        Some(help.iter().fold(found, |found, help| found.help(*help)))
+    }
+
+    fn is_blend(&self, decl: DeclIndex) -> bool {
+        let result = self.decls[decl.0].ast.signature.result.as_ref();
+        matches!(
+            result.map(|ty| &ty.kind),
+            Some(ast::TypeExprKind::Named(word)) if word == "blend"
+        )
     }
 
     fn library_decls(&self, name: &str) -> &[DeclIndex] {

@@ -308,8 +308,8 @@ fn unnamed(parameters: &[ParameterSignature]) -> usize {
     parameters.windows(3).position(are_components).map_or(parameters.len(), |vector| vector + 1)
 }
 
-/// The numbers in brackets, as in `box([1, 2, 3])`, if the first parameter, or that after the
-/// receiver, is a vector of as many components as there are numbers.
+/// The values in brackets, as in `box([1, 2, 3])`, if the first parameter, or that after the
+/// receiver, is a list or a vector of as many components as there are values.
 fn bracketed(
     callee: Callee,
     parameters: &[ParameterSignature],
@@ -317,7 +317,11 @@ fn bracketed(
     excess: &[Given],
 ) -> Option<String> {
     let first = usize::from(matches!(parameters.first()?.ty, Type::Shape(_)));
-    let Type::Vec(width) = parameters.get(first)?.ty else { return None };
+    let width = match parameters.get(first)?.ty {
+        Type::Vec(width) => Some(usize::from(width)),
+        Type::List(_) => None,
+        _ => return None,
+    };
     let given: Vec<String> = bound
         .iter()
         .skip(first)
@@ -328,11 +332,12 @@ fn bracketed(
             Value::Expr(_) | Value::Element(_) | Value::Done(..) => None,
         })
         .collect::<Option<_>>()?;
-    let fits = given.len() == usize::from(width);
-    let vector = given.join(", ");
-    fits.then(|| match first {
-        0 => format!("write {}([{vector}])", callee.name),
-        _ => format!("write the vector in brackets: [{vector}]"),
+    let values = given.join(", ");
+    let fits = width.is_none_or(|width| given.len() == width);
+    fits.then(|| match (first, width) {
+        (0, _) => format!("write {}([{values}])", callee.name),
+        (_, Some(_)) => format!("write the vector in brackets: [{values}]"),
+        (_, None) => format!("write the list in brackets: [{values}]"),
     })
 }
 

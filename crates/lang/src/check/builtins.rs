@@ -8,7 +8,7 @@ use super::coerce::bind;
 use super::decl::ParameterSignature;
 use super::kernel::Builtin;
 use super::operators::as_type;
-use super::types::{self, describe, is_scalar, lanes};
+use super::types::{self, describe, is_scalar, lanes, list};
 use super::{Checker, poison};
 use crate::hir::{Expr, ExprKind, Kernel, LocalId, MaterialField, Type};
 
@@ -95,6 +95,12 @@ impl<'a> Checker<'a> {
                 kernel(Kernel::Soft, arguments, Type::Shadow, callee.span)
             }
             Builtin::GlyphCurves => self.glyph_curves(callee, given),
+            Builtin::PolygonEdges => {
+                let parameters = [parameter("points", list(Type::Vec(2)), false)];
+                let arguments = self.all_arguments(callee, &parameters, given);
+                let pieces = list(list(Type::Vec(2)));
+                kernel(Kernel::PolygonEdges, arguments, pieces, callee.span)
+            }
         }
     }
 
@@ -115,8 +121,7 @@ impl<'a> Checker<'a> {
         let arguments = self.arguments(callee, &parameters, given);
         let arguments = arguments.into_iter().zip(defaults);
         let arguments = arguments.map(|(value, default)| value.unwrap_or(default)).collect();
-        let curve = Type::List(Box::new(Type::Vec(2)));
-        kernel(Kernel::GlyphCurves, arguments, Type::List(Box::new(curve)), span)
+        kernel(Kernel::GlyphCurves, arguments, list(list(Type::Vec(2))), span)
     }
 
     /// Checks arguments that are all required; missing ones are reported elsewhere.

@@ -83,7 +83,11 @@ impl<'a> Checker<'a> {
             }
             Ast::Field(base, name) => {
                 let callee = Callee { name: &name.text, at: name.span, span };
-                let given: Vec<_> = std::iter::once(Given::plain(base)).chain(given).collect();
+                let mut given: Vec<_> = std::iter::once(Given::plain(base)).chain(given).collect();
+                if let Some(found) = self.no_operator(callee, &mut given[0]) {
+                    self.report(found);
+                    return self.give_up(given, span);
+                }
                 match self.look_up(callee.name) {
                     Some(_) => self.call_name(callee, given),
                     None => self.unknown_method(callee, given),

@@ -215,7 +215,7 @@ pub(super) fn mismatch(value: &Expr, want: &Type, role: Role) -> Diagnostic {
             let message =
                 format!("{subject} is {}; this is {}", describe(want), describe(&value.ty));
             let found = Diagnostic::error(Code::TYPE_MISMATCH, value.span, message);
-            ways_out(&value.ty, want, role).into_iter().fold(found, Diagnostic::help)
+            ways_out(value, want, role).into_iter().fold(found, Diagnostic::help)
         }
     }
 }
@@ -264,7 +264,8 @@ pub(super) fn literal(value: &Expr) -> Option<f64> {
 }
 
 /// Suggestions for a value of the wrong type, best first.
-fn ways_out(have: &Type, want: &Type, role: Role) -> Vec<String> {
+fn ways_out(value: &Expr, want: &Type, role: Role) -> Vec<String> {
+    let have = &value.ty;
     match (role, have, want, way_out(have, want)) {
         (Role::Formula(name), Type::Shape(_), _, sampled) => {
             let made = format!("to combine shapes, declare a function: fn {name}(...) = ...");
@@ -278,6 +279,10 @@ fn ways_out(have: &Type, want: &Type, role: Role) -> Vec<String> {
         (Role::Argument(callee, _), _, Type::Shape(_), None) => {
             vec![format!("pass the shape first: {callee}(a, ...) or a.{callee}(...)")]
         }
+        (_, Type::Number | Type::Int, Type::Fn(..), None) if *want == types::blend() => {
+            let width = literal(value).map_or("x".to_owned(), |width| width.to_string());
+            vec![format!("write a blend of that width: smooth({width})")]
+        }
         (_, _, _, way) => way.into_iter().collect(),
     }
 }
@@ -289,9 +294,6 @@ fn way_out(have: &Type, want: &Type) -> Option<String> {
         (Type::Vec(_) | Type::List(_), Type::Angle) => Some(
             "give each axis by name: rotate(x: 10deg, y: 45deg)".into(),
         ),
-        (Type::Number | Type::Int, Type::Fn(..)) if *want == types::blend() => {
-            Some("write a blend of that width: smooth(0.1)".into())
-        }
         (Type::Shape(_), Type::Number) => {
             Some("to get a shape's distance, call it with a point: a(p)".into())
         }

@@ -2,7 +2,7 @@
 
 use sdfc_graph::SurfaceVector;
 
-use super::types::{is_numeric, is_scalar};
+use super::types::{is_numeric, is_scalar, list};
 use crate::hir::{Kernel, Type};
 
 /// The meaning of a name of the kernel.
@@ -50,6 +50,8 @@ pub(super) enum Builtin {
     Soft,
     /// `glyph_curves`
     GlyphCurves,
+    /// `polygon_edges`
+    PolygonEdges,
 }
 
 /// A componentwise function.
@@ -199,6 +201,9 @@ pub(crate) const ROWS: &[Row] = rows! {
         "str" Builtin::Str, "str(a, ...)", "Strings and numbers, joined to one string. Numbers have at most six digits after the decimal point. All must be known when the scene compiles.", "str(\"No. \", 7)";
         "glyph_curves" Builtin::GlyphCurves, "glyph_curves(text, font: \"sans\", align: \"left\", spacing: 0, leading: 1.2)", "The outline of a text as a list of circular arcs, for the library's `text`. Units are ems; the first baseline is at y = 0; the inside is on the left of each arc. The arcs stay within 2e-5 ems of the font's quadratic curves. Each arc is [start, tangent point, end, [s, e]]; the tangents at both ends meet in the tangent point. s and e say on which side a point lies whose nearest point is that end: 1 outside, -1 inside, 0 unknown (use the side of the arc).", "len(glyph_curves(\"a\"))";
     }
+    "polygons" {
+        "polygon_edges" Builtin::PolygonEdges, "polygon_edges(points)", "The boundary of the area that a closed polygon fills by the even-odd rule, for the library's `polygon`. Edges are cut where they cross; pieces that coincide cancel each other. The list has the form of `glyph_curves`: [start, middle, end, [s, e]], with the inside on the left. It is empty if a corner depends on a param, or if there are more than 4,096 corners.", "len(polygon_edges([[0, 0], [1, 0], [0, 1]]))";
+    }
 };
 
 /// The meaning of a name in the kernel, if it has one.
@@ -222,6 +227,7 @@ pub fn takes_first(name: &str, ty: &Type) -> bool {
         Builtin::With => matches!(ty, Type::Material | Type::Record(_)),
         Builtin::Color(_) => matches!(ty, Type::Number | Type::Int | Type::Vec(3)),
         Builtin::GlyphCurves => *ty == Type::Text,
+        Builtin::PolygonEdges => *ty == list(Type::Vec(2)),
         Builtin::Str => *ty == Type::Text || is_scalar(ty),
     }
 }

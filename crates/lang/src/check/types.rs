@@ -86,6 +86,11 @@ pub(super) fn point(dim: Dim) -> Type {
     }
 }
 
+/// The type of a list.
+pub(super) fn list(of: Type) -> Type {
+    Type::List(Box::new(of))
+}
+
 /// The word for a shape of a dimension.
 pub(super) fn shape_word(dim: Dim) -> &'static str {
     match dim {

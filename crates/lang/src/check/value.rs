@@ -363,6 +363,7 @@ fn constant(builtin: Builtin) -> Option<(ExprKind, Type)> {
         | Builtin::With
         | Builtin::Color(_)
         | Builtin::Soft
-        | Builtin::GlyphCurves => None,
+        | Builtin::GlyphCurves
+        | Builtin::PolygonEdges => None,
     }
 }

@@ -238,16 +238,14 @@ impl<'p> Elaborator<'p> {
         };
         let (value, lo, hi) = (show(value), end(range[0]), end(range[1]));
         let name = &parameter.name;
-        let message = if found.inputs.is_empty() {
+        let message = if found.causes.is_empty() {
             format!("argument `{name}` is {value}, outside its range {lo}..{hi}")
         } else {
             format!("argument `{name}` can be {value}, outside its range {lo}..{hi}")
         };
         let mut error = Diagnostic::error(ErrorCode::OUT_OF_RANGE, span, message);
-        for (input, at) in &found.inputs {
-            error = error.note(format!("this happens if {input} is {}", show_number(*at)));
-        }
-        if !found.inputs.is_empty() {
+        error = found.causes.iter().fold(error, Diagnostic::note);
+        if !found.causes.is_empty() {
             error = error.help("give the param a range that fits, or `clamp` the value");
         }
         self.report(error.note_at(parameter.span, "the range is declared here"))
@@ -267,9 +265,7 @@ impl<'p> Elaborator<'p> {
             };
             let at = self.frames.last().map_or(require.span, |frame| frame.span);
             let mut error = Diagnostic::error(ErrorCode::REQUIREMENT, at, &require.message);
-            for (input, at) in &found.inputs {
-                error = error.note(format!("this happens if {input} is {}", show_number(*at)));
-            }
+            error = found.causes.iter().fold(error, Diagnostic::note);
             if let Some(bounds) = bounds {
                 error = error.note(self.show_bounds(bounds, &found));
             }

@@ -1,9 +1,11 @@
 //! `rgb`, `linear_rgb`, `hsv`, `hsl` and `oklch`: convert numbers and an alpha to linear colours.
 
+use sdfc_diagnostics::{Code, Diagnostic, Span};
 use sdfc_graph::{NodeId, Unary};
 
 use super::elaborator::{Elaborator, Env, Outcome};
 use super::kernel::Application;
+use super::report::show_number;
 use super::value::Value;
 
 /// Oklab to the cube roots of the cone responses (Ottosson 2020).
@@ -23,7 +25,28 @@ impl<'p> Elaborator<'p> {
     /// `rgb(red, green, blue, alpha)`, each in 0..1 and encoded as sRGB.
     pub(super) fn rgb(&mut self, env: &mut Env<'p>, at: Application<'p>) -> Outcome<Value<'p>> {
         let [red, green, blue, alpha] = self.numbers(env, at.args)?;
+        self.warn_above_one(at.span, [red, green, blue]);
         self.joined(at, [red, green, blue].map(Channel::Srgb), alpha)
+    }
+
+    /// Warns of components above 1: most are written for a range of 0 to 255.
+    fn warn_above_one(&mut self, span: Span, channels: [NodeId; 3]) {
+        let above = |node| self.graph.as_number(node).filter(|number| *number > 1.0);
+        let Some(first) = channels.into_iter().find_map(above) else { return };
+        let message =
+            format!("the components of `rgb` go from 0 to 1; this has {}", show_number(first));
+        let warning = Diagnostic::warning(Code::BRIGHT_COLOUR, span, message);
+        let bytes = channels.map(|node| {
+            let byte = self.graph.as_number(node)?;
+            ((0.0..=255.0).contains(&byte) && byte.fract() == 0.0).then_some(byte as u8)
+        });
+        let help = match bytes {
+            [Some(red), Some(green), Some(blue)] => {
+                format!("if they go from 0 to 255, write #{red:02x}{green:02x}{blue:02x}")
+            }
+            _ => "for amounts of light above 1, write `linear_rgb`".to_owned(),
+        };
+        self.report(warning.help(help));
     }
 
     /// `linear_rgb(red, green, blue, alpha)`.

@@ -106,6 +106,7 @@ impl<'p> Elaborator<'p> {
             Kernel::Oklch => self.oklch(env, at),
             Kernel::Hard => Ok(Value::Shadow(Shadow::Hard)),
             Kernel::GlyphCurves => self.glyph_curves(env, at),
+            Kernel::PolygonEdges => self.polygon_edges(env, at),
             Kernel::Soft => {
                 let [sharpness] = self.numbers(env, at.args)?;
                 Ok(Value::Shadow(Shadow::Soft(sharpness)))

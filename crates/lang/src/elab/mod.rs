@@ -26,6 +26,7 @@ mod lights;
 mod limits;
 mod literal_uses;
 mod literals;
+mod outlines;
 mod output;
 mod param_inputs;
 mod params;

@@ -9,6 +9,7 @@ use sdfc_graph::eval::{FrameValues, Tape, evaluate_frame};
 use sdfc_graph::{FrameInput, Node, NodeId, Param, ParamKind};
 
 use super::elaborator::Elaborator;
+use super::report::show_number;
 
 /// The largest number of combinations of values that are tested.
 const MAX_COMBINATIONS: usize = 1024;
@@ -21,8 +22,8 @@ const TIMES: [f64; 8] = [0.0, 0.25, 0.7, 1.6, 3.1, 4.7, 10.3, 1234.5];
 #[derive(Clone, Debug)]
 pub(super) struct Refutation {
     frame: FrameValues,
-    /// The inputs that the condition depends on, with their values.
-    pub inputs: Vec<(String, f64)>,
+    /// Sentences about the inputs that the condition depends on.
+    pub causes: Vec<String>,
 }
 
 impl Elaborator<'_> {
@@ -30,7 +31,7 @@ impl Elaborator<'_> {
     pub(super) fn probe(&self, holds: NodeId) -> Option<Refutation> {
         let start = FrameValues::defaults(&self.params);
         if let Some(holds) = self.as_bool(holds) {
-            return (!holds).then_some(Refutation { frame: start, inputs: Vec::new() });
+            return (!holds).then_some(Refutation { frame: start, causes: Vec::new() });
         }
         let inputs = self.inputs(holds);
         let choices: Vec<Vec<f64>> = inputs.iter().map(|&input| self.candidates(input)).collect();
@@ -55,8 +56,37 @@ impl Elaborator<'_> {
             FrameInput::Time => frame.time,
             FrameInput::Frame => frame.frame,
         };
-        let inputs = inputs.iter().map(|&input| (self.input_name(input), value(input))).collect();
-        Refutation { frame, inputs }
+        let causes = inputs
+            .iter()
+            .flat_map(|&input| {
+                let (name, value) = (self.input_name(input), value(input));
+                let cause = format!("this happens if {name} is {}", show_number(value));
+                std::iter::once(cause).chain(self.unstated_range(input, value))
+            })
+            .collect();
+        Refutation { frame, causes }
+    }
+
+    /// A sentence about the range of a param that states none, if a value at one of its ends is at
+    /// fault.
+    fn unstated_range(&self, input: FrameInput, value: f64) -> Option<String> {
+        let FrameInput::Param(index) = input else { return None };
+        let stated = self.program.params.get(index as usize)?.range.is_some();
+        let param = self.params.get(index as usize)?;
+        let [lo, hi] = param.range.filter(|range| !stated && range.contains(&value))?;
+        let default = param.default[0];
+        let nearer = |end: f64| if end == 0.0 { 0.1 * default } else { default };
+        let fit = [lo, hi].map(|end| if end == value { nearer(end) } else { end });
+        let show = |number: f64| match param.kind {
+            ParamKind::Angle => format!("{}deg", show_number(number.to_degrees())),
+            _ => show_number(number),
+        };
+        let ([lo, hi], [low, high]) = ([lo, hi].map(show), fit.map(show));
+        let (name, default) = (&param.name, show(default));
+        Some(format!(
+            "a param without a range goes from {lo} to {hi} here; to state one, write \
+             `param {name} = {default} in {low}..{high}`"
+        ))
     }
 
     /// The components of a node at the frame of a counterexample. The node must not depend on a

@@ -232,7 +232,7 @@ impl<'p> Elaborator<'p> {
         let holds = self.graph.le(nought, constant);
         let Some(found) = self.refute(holds) else { return Ok(constant) };
         let value = self.value_at(constant, &found).map_or("…".to_owned(), |v| show_lanes(&v));
-        let can_be = if found.inputs.is_empty() { "is" } else { "can be" };
+        let can_be = if found.causes.is_empty() { "is" } else { "can be" };
         let message = format!("this Lipschitz constant {can_be} {value}, but must be at least 0");
         let help = "it is the largest change of the value when its argument changes by 1";
         Err(self

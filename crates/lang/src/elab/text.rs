@@ -1,7 +1,6 @@
 //! Text: the kernel functions `glyph_curves` and `str`.
 
 use sdfc_diagnostics::{Code, Diagnostic, Span};
-use sdfc_graph::Type;
 
 use super::elaborator::{Elaborator, Env, Outcome, Poison};
 use super::kernel::Application;
@@ -10,7 +9,6 @@ use super::report::show_number;
 use super::value::Value;
 use crate::font::Setting;
 use crate::hir::Expr;
-use crate::outline::Piece;
 
 /// The values of `align`, and the fraction of a line that each puts to the left of x = 0.
 const ALIGNMENTS: [(&str, f64); 3] = [("left", 0.0), ("center", 0.5), ("right", 1.0)];
@@ -34,13 +32,7 @@ impl<'p> Elaborator<'p> {
             let help = "use letters that the font has; `font:` is \"sans\" or a font file beside the scene";
             self.report(Diagnostic::error(Code::TEXT, at.span, why).help(help))
         })?;
-        self.steps += 4 * pieces.len() as u64;
-        let piece = |Piece { curve: [start, control, end], corners }: Piece| {
-            let pairs = [start, control, end, corners];
-            let pairs = pairs.map(|pair| Value::Node(self.graph.constant(Type::Vec2, &pair)));
-            Value::List(pairs.into())
-        };
-        Ok(Value::List(pieces.into_iter().map(piece).collect()))
+        Ok(self.pieces(pieces))
     }
 
     /// `str(a, ...)`. All arguments must be known at compile time.

@@ -115,6 +115,9 @@ pub enum Kernel {
     /// Arguments: text, font, alignment, spacing, leading. Gives a list of arcs, each a list of
     /// four vectors.
     GlyphCurves,
+    /// Argument: the corners of a polygon, a list of vectors. Gives a list of edges in the form of
+    /// `GlyphCurves`.
+    PolygonEdges,
     /// Argument: sharpness.
     Soft,
 }

@@ -337,6 +337,9 @@ impl Verifier<'_> {
             Kernel::GlyphCurves => {
                 assert_eq!(types, [Type::Text, Type::Text, Type::Text, Type::Number, Type::Number]);
             }
+            Kernel::PolygonEdges => {
+                assert_eq!(types, [Type::List(Box::new(Type::Vec(2)))]);
+            }
             // All others are componentwise or map vectors to vectors.
             _ => assert!(types.iter().all(|other| other == ty), "{kernel:?} {types:?} {ty:?}"),
         }

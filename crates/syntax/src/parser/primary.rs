@@ -92,6 +92,12 @@ impl Parser<'_> {
             TokenKind::Greater if before == "=" => {
                 &["a function without a name is written fn(x) = x"]
             }
+            TokenKind::Greater if matches!(before, ">" | "|") => {
+                &["an operator is called with a dot: a.translate(x: 1)"]
+            }
+            TokenKind::Eq if matches!(before, "+" | "-" | "*" | "/" | "%" | "|" | "&") => {
+                &["values do not change; give the new one a name of its own: let b = a + 1"]
+            }
             _ => &[],
         };
         self.expected_with(&format!("an expression{context}"), help)

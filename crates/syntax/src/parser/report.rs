@@ -149,10 +149,20 @@ impl Parser<'_> {
             (TokenKind::Name, "to" | "until") | (TokenKind::Ellipsis, _) => {
                 Some("a range is written with two dots: `0..1`")
             }
+            (TokenKind::Name, "deg" | "turn" | "rad") if self.follows(TokenKind::Number) => {
+                Some("a unit follows its number without a space: `30deg`")
+            }
+            (TokenKind::Eq, _) if self.peek(1).kind == TokenKind::Greater => {
+                Some("a function without a name is written fn(x) = x")
+            }
             (TokenKind::Eq, _) => Some("equality is written `==`; `let a = 1` names a value"),
             (TokenKind::Else, _) => Some("`else` follows the `}` of an `if`"),
             _ => None,
         }
+    }
+
+    fn follows(&self, kind: TokenKind) -> bool {
+        self.previous().is_some_and(|previous| previous.kind == kind)
     }
 
     /// Returns the diagnostic "expected ...", at the next token or, if the line ended too early,
