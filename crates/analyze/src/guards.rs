@@ -31,10 +31,7 @@ pub(crate) fn guards(
     let mut guards = Vec::new();
     let kept = reachable(graph, fields);
     for (operand, &value) in operands.iter().zip(values) {
-        let is_above_box = qualities.get(operand.shape).is_some_and(|quality| {
-            quality.sides.outside == Promise::Exact && quality.sides.is_bound()
-        });
-        let is_wanted = is_above_box
+        let is_wanted = is_above_box(qualities, operand.shape)
             && kept.binary_search(&value).is_ok()
             && cost(graph, &[value]).operations >= LEAST_OPERATIONS;
         if !is_wanted || guards.len() == MAX_GUARDS {
@@ -45,6 +42,33 @@ pub(crate) fn guards(
         }
     }
     Ok(guards)
+}
+
+/// The guard of a region's field at a point, with the same conditions.
+pub(crate) fn guard_of_region(
+    graph: &mut Graph,
+    (expander, bounds): (&mut Expander, &mut Bounds),
+    qualities: &Qualities,
+    (shape, value): (ShapeId, NodeId),
+    point: NodeId,
+) -> Result<Option<Guard>, ExpandError> {
+    if !is_above_box(qualities, shape) || cost(graph, &[value]).operations < LEAST_OPERATIONS {
+        return Ok(None);
+    }
+    let mut ends = bounds.of(graph, shape);
+    for end in &mut ends {
+        *end = expander.node(graph, *end, &[point])?;
+        *end = graph.swizzle(*end, &[0, 1]);
+    }
+    let has_ends = ends.iter().all(|&end| graph.is_finite(end));
+    Ok(has_ends
+        .then(|| Guard { operand: value, bound: signed_distance_to_box(graph, point, ends) }))
+}
+
+fn is_above_box(qualities: &Qualities, shape: ShapeId) -> bool {
+    qualities
+        .get(shape)
+        .is_some_and(|quality| quality.sides.outside == Promise::Exact && quality.sides.is_bound())
 }
 
 /// The signed distance to a box around an operand; `None` if the box has no end.
@@ -61,6 +85,12 @@ fn distance_to_box(
     if ![lo, hi].into_iter().all(|corner| graph.is_finite(corner)) {
         return Ok(None);
     }
+    Ok(Some(signed_distance_to_box(graph, point, [lo, hi])))
+}
+
+/// The signed distance from a point to a box or a rectangle that is a little larger than one with
+/// these corners.
+fn signed_distance_to_box(graph: &mut Graph, point: NodeId, [lo, hi]: [NodeId; 2]) -> NodeId {
     let [half, margin] = [0.5, MARGIN].map(|factor| graph.number(factor));
     let [sum, size] = [graph.add(hi, lo), graph.sub(hi, lo)];
     let [center, half] = [graph.mul(sum, half), graph.mul(size, half)];
@@ -74,9 +104,9 @@ fn distance_to_box(
     let zero = graph.number(0.0);
     let outside = graph.max(past, zero);
     let outside = graph.length(outside);
-    let [x, y, z] = [0, 1, 2].map(|lane| graph.component(past, lane));
-    let deepest = graph.max(y, z);
-    let deepest = graph.max(x, deepest);
-    let inside = graph.min(deepest, zero);
-    Ok(Some(graph.add(outside, inside)))
+    let lanes = (0..graph.ty(past).width() as u8).rev();
+    let lanes: Vec<NodeId> = lanes.map(|lane| graph.component(past, lane)).collect();
+    let deepest = lanes.into_iter().reduce(|deepest, lane| graph.max(lane, deepest));
+    let inside = graph.min(deepest.unwrap_or(zero), zero);
+    graph.add(outside, inside)
 }

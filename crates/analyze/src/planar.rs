@@ -9,8 +9,9 @@
 //! Shaders and the CPU renderer evaluate the same formula, as they do for fields.
 
 use sdfc_graph::{
-    Binary, Dim, ExpandError, Expander, Graph, MaterialField, NodeId, Program, Scene, ShapeId,
-    SurfaceVector, Ternary, Type, Unary, best_gradient, substitute,
+    Binary, Bounds, Dim, ExpandError, Expander, Graph, Guard, MaterialField, NodeId, Program,
+    Scene, ShapeId, SurfaceVector, Ternary, Type, Unary, best_gradient, guarded_distance,
+    substitute,
 };
 
 use crate::certify::conservative::{Uncertified, conservative_field};
@@ -18,6 +19,7 @@ use crate::certify::inexact::inexact_operators;
 use crate::certify::quality::Qualities;
 use crate::colored::colored;
 use crate::cost::cost;
+use crate::guards::guard_of_region;
 use crate::leaves::count_leaves;
 use crate::report::{Report, shape_reports};
 use crate::reroll::materials::{fold_with_chains, reroll_materials};
@@ -97,6 +99,14 @@ pub(crate) fn planar_picture(
     let (gradient, gradient_report) = best_gradient(graph, distance, point);
     (program.distance, program.gradient) = (Some(distance), Some(gradient));
     program.material = whole.material.map(|nearest| topmost(graph, nearest, &layers));
+    let (layers, guards) = match program.settings.isolines {
+        None => {
+            let origin = graph.constant(Type::Vec2, &program.origin[..2]);
+            let at = graph.add(point, origin);
+            guarded(graph, scene, &qualities, layers, at)?
+        }
+        Some(_) => (layers, Vec::new()),
+    };
     let background = program.settings.background;
     let background = background.unwrap_or_else(|| graph.constant(Type::Vec3, &BACKGROUND));
     let mut color = layered(graph, background, &layers, point);
@@ -105,8 +115,11 @@ pub(crate) fn planar_picture(
         color = with_isolines(graph, [color, background], distance, spacing);
     }
     let [red, green, blue] = [0, 1, 2].map(|lane| graph.component(color, lane));
-    let pixel = graph.compose(&[red, green, blue, whole.distance]);
+    let sign = if guards.is_empty() { whole.distance } else { nearest(graph, &layers) };
+    let pixel = graph.compose(&[red, green, blue, sign]);
     program.planar_pixel = Some(pixel);
+    let (guarded, guards) = guards.into_iter().unzip();
+    program.guards = guards;
     Ok(Report {
         loops: formulas.loops,
         unrolled_limit: formulas.unrolled_limit,
@@ -115,6 +128,7 @@ pub(crate) fn planar_picture(
         gradient_cost: cost(graph, &[gradient]),
         gradient: gradient_report,
         pixel_cost: cost(graph, &[pixel]),
+        guarded,
         shapes: shape_reports(graph, &qualities, root, &formulas.divided),
         uncertified: formulas.uncertified,
         inexact_operators: inexact_operators(graph, &qualities, root),
@@ -182,6 +196,38 @@ fn seen_from_the_front(graph: &mut Graph, fields: &[NodeId]) -> Vec<NodeId> {
     let front = graph.constant(Type::Vec3, &[0.0, 0.0, 1.0]);
     let pairs = SurfaceVector::ALL.map(|vector| (graph.surface_vector(vector), front));
     fields.iter().map(|&field| substitute(graph, field, &pairs)).collect()
+}
+
+/// The layers with distances that are evaluated only near the rectangles around them, and the
+/// guards. A layer farther than a pixel away covers nothing of it.
+fn guarded(
+    graph: &mut Graph,
+    scene: &Scene,
+    qualities: &Qualities,
+    mut layers: Vec<Layer>,
+    point: NodeId,
+) -> Result<(Vec<Layer>, Vec<(ShapeId, Guard)>), ExpandError> {
+    let size = graph.point(1, Dim::Two);
+    let width = graph.component(size, 0);
+    let (mut expander, mut bounds) = (Expander::new(), Bounds::new(&scene.params));
+    let mut guards = Vec::new();
+    for (layer, &shape) in layers.iter_mut().zip(&scene.layers) {
+        let (value, known) = ((shape, layer.distance), (&mut expander, &mut bounds));
+        if !layer.has_unit_slope {
+            continue;
+        }
+        if let Some(guard) = guard_of_region(graph, known, qualities, value, point)? {
+            layer.distance = guarded_distance(graph, guard, width);
+            guards.push((shape, guard));
+        }
+    }
+    Ok((layers, guards))
+}
+
+/// The least distance of all layers, which has the sign of the union's.
+fn nearest(graph: &mut Graph, layers: &[Layer]) -> NodeId {
+    let least = layers.iter().map(|layer| layer.distance).reduce(|a, b| graph.min(a, b));
+    least.unwrap_or_else(|| graph.number(f64::INFINITY))
 }
 
 /// The material of the topmost layer at a point; outside of all layers, of the nearest one.

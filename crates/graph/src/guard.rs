@@ -1,4 +1,4 @@
-//! Operands of a union that are evaluated only where they can be the least.
+//! Distances that are evaluated only where they matter: operands of a union, layers of a picture.
 
 use crate::graph::Graph;
 use crate::node::{Binary, Node, NodeId, Ternary};
@@ -15,14 +15,14 @@ pub struct Guard {
     pub bound: NodeId,
 }
 
-/// The parts of a value that [`guarded_minimum`] recognises.
+/// The parts of a value that [`guarded_value`] recognises.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct GuardedMinimum {
+pub struct GuardedValue {
     /// True where the operand has to be evaluated.
     pub condition: NodeId,
-    /// The minimum with the operand.
+    /// The value with the operand.
     pub with_operand: NodeId,
-    /// The minimum without it.
+    /// The value without it.
     pub without: NodeId,
 }
 
@@ -61,15 +61,24 @@ pub(crate) fn guarded_field(graph: &mut Graph, field: NodeId, guards: &[Guard]) 
     })
 }
 
-/// The parts of a node that evaluates the operand of a minimum only where a condition is true;
-/// `None` for any other node.
-pub fn guarded_minimum(graph: &Graph, node: NodeId) -> Option<GuardedMinimum> {
+/// The distance where its bound is less than `near`, and the bound elsewhere.
+pub fn guarded_distance(graph: &mut Graph, guard: Guard, near: NodeId) -> NodeId {
+    let matters = graph.binary(Binary::Lt, guard.bound, near);
+    graph.select(matters, guard.operand, guard.bound)
+}
+
+/// The parts of a node that evaluates a guarded operand only where a condition is true: of a
+/// minimum, or of a distance with one of these guards. `None` for any other node.
+pub fn guarded_value(graph: &Graph, node: NodeId, guards: &[Guard]) -> Option<GuardedValue> {
     let Node::Ternary(Ternary::Select, [condition, with_operand, without]) = graph.node(node)
     else {
         return None;
     };
-    let Node::Binary(Binary::Min, a, b) = graph.node(with_operand) else { return None };
-    let Node::Binary(Binary::Lt, _, least) = graph.node(condition) else { return None };
-    let is_guarded = least == without && (a == without || b == without);
-    is_guarded.then_some(GuardedMinimum { condition, with_operand, without })
+    let Node::Binary(Binary::Lt, bound, least) = graph.node(condition) else { return None };
+    let is_minimum = match graph.node(with_operand) {
+        Node::Binary(Binary::Min, a, b) => least == without && (a == without || b == without),
+        _ => false,
+    };
+    let is_distance = bound == without && guards.contains(&Guard { operand: with_operand, bound });
+    (is_minimum || is_distance).then_some(GuardedValue { condition, with_operand, without })
 }

@@ -86,7 +86,7 @@ pub use enclose::{enclosure, slope_enclosure, tight_enclosure};
 pub use expand::{ExpandError, Expander, MaterialChain, MaterialStep, NODE_LIMIT};
 pub use extract::Extract;
 pub use graph::{Arguments, Graph, LipschitzClaim};
-pub use guard::{Guard, GuardedMinimum, guarded_minimum};
+pub use guard::{Guard, GuardedValue, guarded_distance, guarded_value};
 pub use ids::{IdMap, IdSet};
 pub use loop_body::LoopBody;
 pub use loops::{Loop, MAX_LOOP_DEPTH, SkipCondition, Table};

@@ -38,7 +38,7 @@ impl Scene {
             loops: report.loops.iter().map(|rolled| rolled.operands).collect(),
             analytic: self.names(&report.analytic),
             marched: self.names(&report.marched),
-            guarded: self.names(&report.guarded),
+            guarded: self.names_with_lines(&report.guarded),
             ops_per_ray: report.ray_cost.operations,
             ops_per_step: report.marched_cost.operations,
             spirv_instructions: field.map_or(0, |cost| cost.instructions as usize),
@@ -90,6 +90,22 @@ impl Scene {
             name.as_ref().unwrap_or(definition).clone()
         };
         shapes.iter().map(name).collect()
+    }
+
+    /// The names of shapes and the lines where they are made, as in `text at line 3`.
+    fn names_with_lines(&self, shapes: &[ShapeId]) -> Vec<String> {
+        let with_line = |(name, shape): (String, &ShapeId)| match self
+            .sites()
+            .iter()
+            .find(|site| site.shape == *shape)
+        {
+            Some(site) => {
+                let place = self.sources().line_column(site.span.file, site.span.start);
+                format!("{name} at line {}", place.line)
+            }
+            None => name,
+        };
+        self.names(shapes).into_iter().zip(shapes).map(with_line).collect()
     }
 
     pub(crate) fn finite_bounds(&self) -> Bounds {

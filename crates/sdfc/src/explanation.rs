@@ -34,7 +34,8 @@ pub struct Explanation {
     pub analytic: Vec<String>,
     /// Shapes that `auto` marches.
     pub marched: Vec<String>,
-    /// Costly shapes that shaders evaluate only where the box around them is nearer than the rest.
+    /// Costly shapes that shaders evaluate only near the box around them: where it is nearer than
+    /// the rest, or within a pixel of it. Each with its line, as in `text at line 3`.
     pub guarded: Vec<String>,
     /// Arithmetic operations of the analytic pre-intersection, per ray.
     pub ops_per_ray: usize,

@@ -216,7 +216,7 @@ fn contours_of_polygons_are_proven() {
     let teeth =
         "polygon([for i in 0..60: (0.6 + 0.04 * (i % 2)) * [cos(i * 6deg), sin(i * 6deg)]])";
     let star = "polygon([for i in 0..5: [sin(0.4turn * i), cos(0.4turn * i)]])";
-    for (source, paths) in [(teeth, 1), (star, 5)] {
+    for (source, paths) in [(teeth, 1), (star, 2)] {
         let contour = contour(source, [0.0, 0.0, 1.0], 0.0, 0.001).unwrap();
         assert!(contour.certificate.is_proven, "{source}: {:?}", contour.certificate);
         assert_eq!(contour.paths.len(), paths, "{source}");

@@ -1,5 +1,5 @@
-//! Costly operands of a union that are evaluated only near their boxes: the bounds hold, and
-//! neither a value nor a picture changes.
+//! Costly operands of a union, and costly layers of a planar picture, that are evaluated only near
+//! their boxes: the bounds hold, and neither a value nor a picture changes.
 
 #![allow(clippy::expect_used, reason = "a test stops where it fails")]
 
@@ -7,7 +7,7 @@ use libtest_mimic::{Arguments, Failed, Trial};
 use sdfc::{Compiler, FrameValues, Method, Scene, no_progress};
 use sdfc_codegen::{FieldOptions, field_module, render_module};
 use sdfc_graph::eval::Tape;
-use sdfc_graph::{NodeId, Program};
+use sdfc_graph::{Dim, NodeId, Program, guarded_distance, substitute};
 use sdfc_render::{Gpu, HIT, Image, Pipeline, RenderOptions, View, testing, uniform_values};
 
 const SIZE: [u32; 2] = [96, 64];
@@ -23,12 +23,17 @@ const CAMERA: &str = "camera(eye: [1.2, 1.1, 3], target: [0, 0.2, 0], fov: 40deg
                       sun(direction: [1, 2, 1], shadow: soft(8))\n\
                       ambient(strength: 0.3)\nambient_occlusion(radius: 0.5)\n";
 
+const PAGE: &str = "background(#123)\ncamera(eye: [0, 0.2, 1], target: [0, 0.2, 0], height: 1.6)\n";
+
 /// A test of a scene.
 type Test = fn(&Scene) -> Result<(), Failed>;
 
 const DRAWN: &str = "picture";
 const TESTS: [(&str, Test); 3] =
     [("values", same_values), ("code", is_in_a_branch), (DRAWN, same_picture)];
+
+const TESTS_OF_LAYERS: [(&str, Test); 3] =
+    [("values", same_pixels), ("code", layers_are_in_branches), (DRAWN, same_picture)];
 
 fn main() {
     let outline = "polygon([for i in 0..60: (1 + 0.3 * cos(i)) * [cos(i * 6deg), sin(i * 6deg)]])";
@@ -47,10 +52,22 @@ fn main() {
             format!("param s = 0.2 in -1..1\n{WORD}.translate(x: s)\nplane(y: -0.1)\n"),
         ),
     ];
+    let layer = "text(\"sd\", size: 0.8, align: \"center\")";
+    let pages = [
+        ("words on a page", format!("rect(2.5).color(#eee)\n{layer}.color(#a20)\n")),
+        (
+            "layers that overlap",
+            format!(
+                "param s = 0.3 in -1..1\n{layer}.color(#f00)\n{layer}.rotate(20deg)\
+                 .translate([s, 0.2]).color(rgb(0, 1, 0, 0.5))\n{outline}.scale(0.2).color(#00f)\n"
+            ),
+        ),
+    ];
+    let solids = scenes.into_iter().map(|(name, text)| (name, text + CAMERA, TESTS));
+    let pages = pages.into_iter().map(|(name, text)| (name, text + PAGE, TESTS_OF_LAYERS));
     let mut trials = Vec::new();
-    for (name, text) in scenes {
-        let text = text + CAMERA;
-        for (what, test) in TESTS {
+    for (name, text, tests) in solids.chain(pages) {
+        for (what, test) in tests {
             let scene = text.clone();
             let trial = Trial::test(format!("{what} of {name}"), move || test(&compiled(&scene)));
             trials.push(trial.with_ignored_flag(what == DRAWN && testing::without_gpu()));
@@ -116,6 +133,57 @@ fn is_in_a_branch(scene: &Scene) -> Result<(), Failed> {
         return Err(format!("{branches} branches for {guarded} operands").into());
     }
     if guarded == words && before.contains("loop {") {
+        return Err("a loop precedes the first branch".into());
+    }
+    Ok(())
+}
+
+/// The pixels are those of distances that are evaluated everywhere.
+fn same_pixels(scene: &Scene) -> Result<(), Failed> {
+    let (program, frame) = (scene.program(), FrameValues::defaults(scene.params()));
+    let pixel = program.planar_pixel.ok_or("the scene is not planar")?;
+    let mut graph = program.graph.clone();
+    let size = graph.point(1, Dim::Two);
+    let width = graph.component(size, 0);
+    let mut everywhere = Vec::new();
+    for &guard in &program.guards {
+        everywhere.push((guarded_distance(&mut graph, guard, width), guard.operand));
+        let pairs = values(program, &[guard.bound, guard.operand], &frame);
+        for (point, pair) in points().zip(pairs) {
+            if pair[0] > pair[1] + PRECISION {
+                return Err(format!("at {point:?} the box is at {pair:?}").into());
+            }
+        }
+    }
+    let plain = substitute(&mut graph, pixel, &everywhere);
+    if everywhere.is_empty() || plain == pixel {
+        return Err("nothing is guarded".into());
+    }
+    let tape = Tape::for_rays(&graph, &[pixel, plain])?;
+    let mut pixels = tape.prepare::<f64>(&frame);
+    for (index, point) in points().enumerate() {
+        let width = [0.003, 0.03, 0.3][index % 3];
+        let [new, old] = *pixels.eval_ray(point, [width; 3]) else {
+            return Err("two roots".into());
+        };
+        let is_same = new.iter().zip(old).take(3).all(|(a, b)| (a - b).abs() < 1e-9);
+        if !is_same || (new[3] <= 0.0) != (old[3] <= 0.0) {
+            return Err(format!("at {point:?} {old:?} became {new:?}").into());
+        }
+    }
+    Ok(())
+}
+
+/// Each layer's loops are written in a branch.
+fn layers_are_in_branches(scene: &Scene) -> Result<(), Failed> {
+    let text = render_module(scene.program(), Method::Auto)?.wgsl()?;
+    let body = text.split_once("fn planar_pixel").ok_or("there is no pixel")?.1;
+    let before = body.split_once("least = ").ok_or("there is no branch")?.0;
+    let (branches, layers) = (body.matches("var least").count(), scene.program().guards.len());
+    if branches != layers {
+        return Err(format!("{branches} branches for {layers} layers").into());
+    }
+    if before.contains("loop {") {
         return Err("a loop precedes the first branch".into());
     }
     Ok(())

@@ -1,7 +1,7 @@
-//! Operands of a minimum that are evaluated in a branch.
+//! Guarded operands, which are evaluated in a branch.
 
 use rustc_hash::{FxHashMap, FxHashSet};
-use sdfc_graph::{Graph, Node, NodeId, guarded_minimum};
+use sdfc_graph::{Graph, Node, NodeId, guarded_value};
 
 use super::body::Value;
 use super::inputs::Inputs;
@@ -10,11 +10,11 @@ use super::types;
 use super::uses::reads;
 use crate::error::Error;
 
-/// The nodes that are computed in the branch of each guarded minimum.
+/// The nodes that are computed in the branch of each guarded value.
 pub(super) type Branches = FxHashMap<NodeId, Vec<NodeId>>;
 
 impl Lowering<'_> {
-    /// Splits ascending nodes into those that only the operand of a guarded minimum needs, and all
+    /// Splits ascending nodes into those that only the operand of a guarded value needs, and all
     /// others.
     pub(super) fn without_guarded(
         &self,
@@ -28,13 +28,13 @@ impl Lowering<'_> {
             return (branches, nodes.to_vec());
         }
         let mut inside: FxHashSet<NodeId> = FxHashSet::default();
-        // A later minimum may have an earlier one in its branch.
+        // A later value may have an earlier one in its branch.
         for &id in nodes.iter().rev() {
-            let Some(minimum) = guarded_minimum(graph, id) else { continue };
+            let Some(value) = guarded_value(graph, id, &self.program.guards) else { continue };
             if inside.contains(&id) || self.inputs.is_slot(id) {
                 continue;
             }
-            let private = private_nodes(graph, roots, nodes, minimum.with_operand, self.inputs);
+            let private = private_nodes(graph, roots, nodes, value.with_operand, self.inputs);
             // The first of the loops that run listed iterations finds the lists for all of them.
             if private.is_empty() || private.iter().any(|&id| self.is_listed(id)) {
                 continue;
@@ -52,18 +52,18 @@ impl Lowering<'_> {
         self.inputs.active_lists.as_ref().is_some_and(|lists| lists.index_of(skip).is_some())
     }
 
-    /// Writes a guarded minimum: a variable that the branch lowers.
+    /// Writes a guarded value: a variable that the branch changes.
     pub(super) fn guarded(&mut self, id: NodeId, within: &[NodeId]) -> Result<Value, Error> {
         let graph = &self.program.graph;
-        let minimum = guarded_minimum(graph, id).ok_or(Error::NotFlat(id))?;
+        let guarded = guarded_value(graph, id, &self.program.guards).ok_or(Error::NotFlat(id))?;
         let ty = types::value(self.types, graph.ty(id));
         let variable = self.body.variable("least", ty);
-        let (condition, without) = (self.value(minimum.condition)?, self.value(minimum.without)?);
+        let (condition, without) = (self.value(guarded.condition)?, self.value(guarded.without)?);
         self.body.store(variable, without);
         self.body.open_block();
         let matrices = self.matrices.clone();
-        self.visit(&[minimum.with_operand], within)?;
-        let with_operand = self.value(minimum.with_operand)?;
+        self.visit(&[guarded.with_operand], within)?;
+        let with_operand = self.value(guarded.with_operand)?;
         self.body.store(variable, with_operand);
         self.body.close_branch(condition);
         self.matrices = matrices;
