@@ -19,7 +19,7 @@ struct Bound {
     undecided: f64,
 }
 
-const CERTIFIED: Bound = Bound { size: [96, 54], undecided: 1e-3 };
+const CERTIFIED: Bound = Bound { size: [64, 36], undecided: 1e-3 };
 
 /// Largest error of normals on smooth surfaces (99th percentile), in degrees.
 const NORMAL: f64 = 1e-3;
