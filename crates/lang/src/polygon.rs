@@ -169,7 +169,7 @@ fn is_inside_right(piece: Ends, pieces: &[Ends], points: &Points) -> bool {
 /// For both ends of each piece: the side of the points to which that end is nearest. There are such
 /// points if the pieces at a corner leave an angle above 180 degrees free.
 fn corner_sides(pieces: &[Ends], points: &Points) -> Vec<[f64; 2]> {
-    // At each point, the directions of the pieces that leave it, and which end of which piece it is.
+    // At each point, the directions of the pieces there, and which end of which piece it is.
     let mut leaving: Vec<Vec<(f64, usize, usize)>> = vec![Vec::new(); points.all.len()];
     for (index, piece) in pieces.iter().enumerate() {
         for end in 0..2 {
