@@ -94,19 +94,17 @@ pub(crate) fn planar_picture(
         has_unit_slope: unit_slopes.contains(shape),
     };
     let whole = layer((0, &root));
-    let layers: Vec<Layer> = (1..).zip(&scene.layers).map(layer).collect();
+    let mut layers: Vec<Layer> = (1..).zip(&scene.layers).map(layer).collect();
     let distance = formulas.conservative;
     let (gradient, gradient_report) = best_gradient(graph, distance, point);
     (program.distance, program.gradient) = (Some(distance), Some(gradient));
     program.material = whole.material.map(|nearest| topmost(graph, nearest, &layers));
-    let (layers, guards) = match program.settings.isolines {
-        None => {
-            let origin = graph.constant(Type::Vec2, &program.origin[..2]);
-            let at = graph.add(point, origin);
-            guarded(graph, scene, &qualities, layers, at)?
-        }
-        Some(_) => (layers, Vec::new()),
-    };
+    let mut guards = Vec::new();
+    if program.settings.isolines.is_none() {
+        let origin = graph.constant(Type::Vec2, &program.origin[..2]);
+        let at = graph.add(point, origin);
+        guards = guard_layers(graph, scene, &qualities, &mut layers, at)?;
+    }
     let background = program.settings.background;
     let background = background.unwrap_or_else(|| graph.constant(Type::Vec3, &BACKGROUND));
     let mut color = layered(graph, background, &layers, point);
@@ -198,15 +196,15 @@ fn seen_from_the_front(graph: &mut Graph, fields: &[NodeId]) -> Vec<NodeId> {
     fields.iter().map(|&field| substitute(graph, field, &pairs)).collect()
 }
 
-/// The layers with distances that are evaluated only near the rectangles around them, and the
-/// guards. A layer farther than a pixel away covers nothing of it.
-fn guarded(
+/// Lets the distances of costly layers be evaluated only near the rectangles around them, and
+/// returns the guards. A layer farther than a pixel away covers nothing of it.
+fn guard_layers(
     graph: &mut Graph,
     scene: &Scene,
     qualities: &Qualities,
-    mut layers: Vec<Layer>,
+    layers: &mut [Layer],
     point: NodeId,
-) -> Result<(Vec<Layer>, Vec<(ShapeId, Guard)>), ExpandError> {
+) -> Result<Vec<(ShapeId, Guard)>, ExpandError> {
     let size = graph.point(1, Dim::Two);
     let width = graph.component(size, 0);
     let (mut expander, mut bounds) = (Expander::new(), Bounds::new(&scene.params));
@@ -221,7 +219,7 @@ fn guarded(
             guards.push((shape, guard));
         }
     }
-    Ok((layers, guards))
+    Ok(guards)
 }
 
 /// The least distance of all layers, which has the sign of the union's.

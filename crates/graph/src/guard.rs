@@ -75,10 +75,9 @@ pub fn guarded_value(graph: &Graph, node: NodeId, guards: &[Guard]) -> Option<Gu
         return None;
     };
     let Node::Binary(Binary::Lt, bound, least) = graph.node(condition) else { return None };
-    let is_minimum = match graph.node(with_operand) {
-        Node::Binary(Binary::Min, a, b) => least == without && (a == without || b == without),
-        _ => false,
-    };
+    let is_minimum = least == without
+        && matches!(graph.node(with_operand), Node::Binary(Binary::Min, a, b)
+            if a == without || b == without);
     let is_distance = bound == without && guards.contains(&Guard { operand: with_operand, bound });
     (is_minimum || is_distance).then_some(GuardedValue { condition, with_operand, without })
 }

@@ -115,7 +115,7 @@ fn meetings(one: Ends, other: Ends, points: &Points) -> Vec<Point> {
         ends.map(at).into_iter().filter(move |&end| {
             let t = dot(sub(end, from), along) / square;
             let foot = [from[0] + t * along[0], from[1] + t * along[1]];
-            t >= 0.0 && t <= 1.0 && distance(foot, end) <= points.same
+            (0.0..=1.0).contains(&t) && distance(foot, end) <= points.same
         })
     };
     let mut met: Vec<Point> = ends_on(one, other).chain(ends_on(other, one)).collect();

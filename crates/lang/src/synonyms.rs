@@ -295,7 +295,7 @@ mod tests {
             assert_eq!(plain(name), *name);
             // A clause, such as `intersect`, and a type are no names that a scene can call.
             let is_called = |kind: &str| !matches!(kind, "syntax" | "type");
-            let mut names = entries.iter().filter(|entry| is_called(&entry.kind));
+            let mut names = entries.iter().filter(|entry| is_called(entry.kind));
             let is_free = names.all(|entry| plain(&entry.name) != *name);
             assert!(is_free, "`{name}` exists here now: remove it from the names of other tools");
         }
