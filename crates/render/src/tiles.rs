@@ -133,6 +133,7 @@ impl Tiler {
     /// The same tiles, larger from the start if they adapt: a pixel is expected to take this many
     /// milliseconds, as in the last frame. The first tile takes a quarter of the time that a tile
     /// should take, and the narrowest one of a band a sixteenth, in case this frame is slower.
+    #[cfg(any(feature = "gpu", test))]
     pub(crate) fn after(self, cost: Option<f64>) -> Self {
         let (TileSize::Adaptive { milliseconds }, Some(cost)) = (self.tile_size, cost) else {
             return self;

@@ -38,7 +38,7 @@ impl Scene {
             loops: report.loops.iter().map(|rolled| rolled.operands).collect(),
             analytic: self.names(&report.analytic),
             marched: self.names(&report.marched),
-            guarded: self.names_with_lines(&report.guarded),
+            guarded: self.names_with_lines(&self.skipped()),
             ops_per_ray: report.ray_cost.operations,
             ops_per_step: report.marched_cost.operations,
             spirv_instructions: field.map_or(0, |cost| cost.instructions as usize),
@@ -90,6 +90,20 @@ impl Scene {
             name.as_ref().unwrap_or(definition).clone()
         };
         shapes.iter().map(name).collect()
+    }
+
+    /// The guarded shapes that are not evaluated everywhere. In a union of nothing but guarded
+    /// operands, the first one is.
+    fn skipped(&self) -> Vec<ShapeId> {
+        let report = &self.report;
+        let mut shapes = report.guarded.clone();
+        let has_others =
+            self.is_planar() || !report.analytic.is_empty() || report.marched.len() > shapes.len();
+        let guards = self.program.guards.iter().enumerate();
+        if !has_others && let Some((first, _)) = guards.min_by_key(|(_, guard)| guard.operand) {
+            shapes.remove(first);
+        }
+        shapes
     }
 
     /// The names of shapes and the lines where they are made, as in `text at line 3`.

@@ -51,6 +51,7 @@ impl Scene {
 
     /// Says which shape has the largest Lipschitz constant and what to do about it, if that makes
     /// steps shorter.
+    #[cfg(feature = "render")]
     pub(crate) fn steepest_shape(&self) -> Option<String> {
         let constant = |shape: &&ShapeReport| match shape.lipschitz {
             Lipschitz::Number(constant) => constant,
