@@ -3,8 +3,8 @@
 //! Edges are cut where they meet. Two pieces that coincide cancel each other: a ray crosses both or
 //! none. Every other piece has the inside on exactly one side, so the side of the nearest piece
 //! tells the sign of the distance. An evaluation over a box knows that side wherever one piece is
-//! certainly nearer than the others; the number of edges that a ray crosses it does not know at the
-//! height of a corner.
+//! certainly nearer than the others. At the height of a corner, it does not know how many edges a
+//! ray crosses.
 
 use std::f64::consts::PI;
 

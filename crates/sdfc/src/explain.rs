@@ -108,16 +108,12 @@ impl Scene {
 
     /// The names of shapes and the lines where they are made, as in `text at line 3`.
     fn names_with_lines(&self, shapes: &[ShapeId]) -> Vec<String> {
-        let with_line = |(name, shape): (String, &ShapeId)| match self
-            .sites()
-            .iter()
-            .find(|site| site.shape == *shape)
-        {
-            Some(site) => {
-                let place = self.sources().line_column(site.span.file, site.span.start);
-                format!("{name} at line {}", place.line)
-            }
-            None => name,
+        let with_line = |(name, shape): (String, &ShapeId)| {
+            let Some(site) = self.sites().iter().find(|site| site.shape == *shape) else {
+                return name;
+            };
+            let place = self.sources().line_column(site.span.file, site.span.start);
+            format!("{name} at line {}", place.line)
         };
         self.names(shapes).into_iter().zip(shapes).map(with_line).collect()
     }

@@ -6,6 +6,7 @@ use sdfc_graph::Dim;
 use super::types::{self, describe, is_scalar, poisoned, same_value};
 use super::{Checker, poison};
 use crate::hir::{Comprehension, Element, Expr, ExprKind, Kernel, Lambda, LocalId, Type};
+use crate::synonyms;
 
 /// The purpose of a value: the subject of the message if its type is wrong.
 #[derive(Clone, Copy, Debug)]
@@ -281,7 +282,7 @@ fn ways_out(value: &Expr, want: &Type, role: Role) -> Vec<String> {
         }
         (_, Type::Number | Type::Int, Type::Fn(..), None) if *want == types::blend() => {
             let width = literal(value).map_or("x".to_owned(), |width| width.to_string());
-            vec![format!("write a blend of that width: smooth({width})")]
+            vec![format!("write a blend of that width: {}", synonyms::blend_of_width(&width))]
         }
         (_, _, _, way) => way.into_iter().collect(),
     }
