@@ -138,11 +138,11 @@ impl Build {
         let input = sdfc_files::read(path).map_err(|why| one(why.to_string()))?;
         let files = RecordingFolder { folder: Folder::of(path), requested: RefCell::default() };
         let compiled = Compiler::new().resolver(&files).compile(&input.name, &input.text);
-        let folder = path.parent().unwrap_or(Path::new(""));
-        let requested = files.requested.into_inner();
-        read.extend(requested.iter().map(|path| folder.join(path)));
+        let RecordingFolder { folder, requested } = files;
+        let requested = requested.into_inner();
+        read.extend(requested.iter().map(|path| folder.file(path)));
         let path = |file: &String| match requested.contains(file) {
-            true => folder.join(file).display().to_string(),
+            true => folder.file(file).display().to_string(),
             false => file.clone(),
         };
         let scene = match compiled {

@@ -118,6 +118,21 @@ fn a_file_that_a_scene_imports_may_import_from_above() {
 }
 
 #[test]
+fn a_shared_module_is_opened_where_it_is() {
+    let folder = common::folder(&[(".modules/bolt.sdf", "solid bolt() = length(p) - 0.5\n")]);
+    let mut editor = Editor::start(folder.path(), json!(["utf-16"]));
+    let uri = |name: &str| format!("file://{}/{name}", folder.path().display());
+    editor.open(&uri("main.sdf"), "import bolt from \"bolt.sdf\"\nbolt()\n");
+    assert_eq!(editor.diagnostics(&uri("main.sdf")), json!([]));
+    let declared = editor.ask("textDocument/definition", Editor::at(&uri("main.sdf"), 1, 1));
+    assert_eq!(declared["uri"], uri(".modules/bolt.sdf"));
+    // A text that is open and not saved counts.
+    editor.open(&uri(".modules/bolt.sdf"), "solid nut() = length(p) - 0.5\n");
+    assert_eq!(editor.diagnostics(&uri("main.sdf"))[0]["code"], "E0209");
+    editor.end();
+}
+
+#[test]
 fn errors_of_elaboration_in_a_large_scene_come_after_a_pause() {
     let folder = common::folder(&[]);
     let mut editor = Editor::start(folder.path(), json!(["utf-16"]));

@@ -79,6 +79,36 @@ fn params_of_imported_files_of_the_same_name_are_set_one_by_one() {
 }
 
 #[test]
+fn shared_modules_are_imported_from_the_folders_of_sdfc_path() {
+    let scene = "import bolt from \"screws/bolt.sdf\"\nbolt()\ncamera(eye: [0, 0, 9])\n";
+    let bolt = "import pitch from \"pitch.sdf\"\nsolid bolt() = length(p) - pitch\n";
+    let folder = folder(&[
+        ("scene.sdf", scene),
+        ("shared/screws/bolt.sdf", bolt),
+        ("shared/screws/pitch.sdf", "let pitch = 0.5\n"),
+    ]);
+    let args = "render scene.sdf --backend cpu --size 24x16 -o out.png";
+    assert!(said(&run(&folder, args)).contains("E0209"));
+    let shared = folder.path().join("shared");
+    // A folder that does not exist is skipped.
+    let listed = std::env::join_paths([&folder.path().join("none"), &shared]).unwrap();
+    let variables = [("SDFC_PATH", listed.to_str().unwrap())];
+    let with_modules = || run_in(folder.path(), args, b"", &variables);
+    let output = with_modules();
+    assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+    // A message names the file where it is.
+    let wrong = shared.join("screws/pitch.sdf");
+    std::fs::write(&wrong, "let pitch = 0.5 +\n").unwrap();
+    let output = with_modules();
+    assert!(said(&output).contains(&format!("{}:1:", wrong.display())), "{}", said(&output));
+    // A file in the folder of the scene comes first.
+    std::fs::create_dir(folder.path().join("screws")).unwrap();
+    std::fs::write(folder.path().join("screws/pitch.sdf"), "let pitch = 0.7\n").unwrap();
+    let output = with_modules();
+    assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+}
+
+#[test]
 fn wrong_values_are_refused_by_name() {
     let folder = with_params();
     refused(&folder, "--set q=1", "it has r, tilt, paint");

@@ -72,24 +72,57 @@ pub fn read(path: &Path) -> Result<Input, ReadError> {
     }
 }
 
-/// The files that a scene may import: those below its folder. For stdin that is the current folder.
+/// The environment variable that lists folders of shared modules, as `PATH` lists folders.
+pub const MODULE_FOLDERS: &str = "SDFC_PATH";
+
+/// The files that a scene may import: those below its folder, which is the current folder for
+/// stdin, and those below the folders of shared modules.
 #[derive(Clone, Debug)]
-pub struct Folder(PathBuf);
+pub struct Folder {
+    own: PathBuf,
+    /// Searched in this order, after the scene's own folder.
+    modules: Vec<PathBuf>,
+}
 
 impl Folder {
-    /// Creates the resolver for the scene at `path`.
+    /// Creates the resolver for the scene at `path`, with the folders of [`MODULE_FOLDERS`].
     pub fn of(path: &Path) -> Self {
         let parent = path.parent().filter(|parent| !parent.as_os_str().is_empty());
-        Self(parent.unwrap_or(Path::new(".")).to_owned())
+        Self::new(parent.unwrap_or(Path::new(".")).to_owned())
     }
 
-    /// Returns the path of the folder.
+    /// The resolver for scenes in a folder, with the folders of [`MODULE_FOLDERS`].
+    pub fn new(own: PathBuf) -> Self {
+        let listed = std::env::var_os(MODULE_FOLDERS).unwrap_or_default();
+        // An empty part would be the current folder, which nobody means.
+        let modules = std::env::split_paths(&listed).filter(|it| !it.as_os_str().is_empty());
+        Self { own, modules: modules.collect() }
+    }
+
+    /// The same with other folders of shared modules.
+    pub fn with_modules(self, modules: Vec<PathBuf>) -> Self {
+        Self { modules, ..self }
+    }
+
+    /// Returns the path of the scene's folder.
     pub fn path(&self) -> &Path {
-        &self.0
+        &self.own
+    }
+
+    /// Where a file with this path is: below the first folder that has one, or below the scene's
+    /// folder if none has.
+    pub fn file(&self, path: &str) -> PathBuf {
+        self.base(path).join(path)
+    }
+
+    fn base(&self, path: &str) -> &Path {
+        let mut bases = std::iter::once(&self.own).chain(&self.modules);
+        bases.find(|base| base.join(path).exists()).unwrap_or(&self.own)
     }
 
     fn resolve(&self, path: &str) -> std::io::Result<PathBuf> {
-        let (folder, file) = (self.0.canonicalize()?, self.0.join(path).canonicalize()?);
+        let base = self.base(path);
+        let (folder, file) = (base.canonicalize()?, base.join(path).canonicalize()?);
         // A symbolic link could lead out of the folder although the path does not.
         if file.starts_with(&folder) { Ok(file) } else { Err(ErrorKind::PermissionDenied.into()) }
     }
@@ -107,6 +140,11 @@ impl sdfc::Resolver for Folder {
     fn read_bytes(&self, path: &str) -> Result<Vec<u8>, String> {
         let file = self.resolve(path).map_err(|e| e.to_string())?;
         read_bytes(&file).map_err(|e| e.to_string())
+    }
+
+    fn name_of(&self, path: &str) -> Option<String> {
+        let base = self.base(path);
+        (base != self.own).then(|| base.join(path).display().to_string())
     }
 }
 
@@ -146,6 +184,30 @@ mod tests {
         assert_eq!(folder.read("part.sdf").as_deref(), Ok("inside"));
         assert!(folder.read("../secret.sdf").is_err());
         assert!(folder.read("missing.sdf").is_err());
+    }
+
+    #[test]
+    fn shared_modules_come_after_the_folder_of_the_scene() {
+        let root = tempfile::tempdir().unwrap();
+        let [own, first, second] = ["scene", "first", "second"].map(|it| root.path().join(it));
+        for (folder, files) in
+            [(&own, &["a.sdf"][..]), (&first, &["a.sdf", "b.sdf"]), (&second, &["b.sdf", "c.sdf"])]
+        {
+            std::fs::create_dir(folder).unwrap();
+            for file in files {
+                let name = folder.file_name().unwrap().to_string_lossy();
+                std::fs::write(folder.join(file), name.as_bytes()).unwrap();
+            }
+        }
+        let folder = Folder::new(own.clone()).with_modules(vec![first, second.clone()]);
+        for (file, place) in [("a.sdf", "scene"), ("b.sdf", "first"), ("c.sdf", "second")] {
+            assert_eq!(folder.read(file).as_deref(), Ok(place), "{file}");
+        }
+        assert_eq!(folder.file("c.sdf"), second.join("c.sdf"));
+        assert_eq!(folder.file("missing.sdf"), own.join("missing.sdf"));
+        // A module's folder is no way to the files beside it.
+        std::fs::write(root.path().join("secret.sdf"), "outside").unwrap();
+        assert!(folder.read("../secret.sdf").is_err());
     }
 
     #[test]

@@ -28,6 +28,11 @@ pub trait Resolver {
         self.read(path).map(String::into_bytes)
     }
 
+    /// The name of a source file in diagnostics, if it is not below the folder of the scene.
+    fn name_of(&self, _path: &str) -> Option<String> {
+        None
+    }
+
     /// The path of the scene below the folder that paths are relative to; empty for a scene in that
     /// folder. An editor checks an imported file by itself, and its imports may lead to folders
     /// above its own.
@@ -76,7 +81,8 @@ struct Open {
 ///
 /// Returns the files with diagnostics about imports that cannot be loaded and about their syntax.
 /// In `sources` a file has the name of the scene with its last part replaced: beside
-/// `parts/shelf.sdf`, the import `hook.sdf` is called `parts/hook.sdf`.
+/// `parts/shelf.sdf`, the import `hook.sdf` is called `parts/hook.sdf`. The resolver can give it
+/// another name.
 pub fn load(
     sources: &mut Sources,
     (scene, tree): (FileId, &ast::File),
@@ -122,7 +128,8 @@ pub fn load(
                 continue;
             }
         };
-        let id = sources.add(format!("{folder}{path}"), text);
+        let name = resolver.name_of(&path).unwrap_or_else(|| format!("{folder}{path}"));
+        let id = sources.add(name, text);
         let (tree, of_parser) = sdfc_syntax::parse(sources, id);
         let whole = !has_errors(&of_parser);
         found.extend(of_parser);

@@ -27,6 +27,11 @@ pub trait Disk: Sync {
     /// Returns the reason in one line.
     fn read_bytes(&self, path: &Path) -> Result<Vec<u8>, String>;
 
+    /// Where a file is that scenes in a folder import by a path: in that folder or elsewhere.
+    fn file(&self, folder: &Path, path: &str) -> PathBuf {
+        folder.join(path)
+    }
+
     /// Returns the scenes in a folder and below it. There may be more than those.
     fn scenes(&self, folder: &Path) -> Vec<PathBuf>;
 
@@ -85,12 +90,17 @@ struct Beside<'d> {
 
 impl Resolver for Beside<'_> {
     fn read(&self, path: &str) -> Result<String, String> {
-        let path = self.folder.join(path);
+        let path = self.disk.file(&self.folder, path);
         self.open.get(&path).map_or_else(|| self.disk.read(&path), |text| Ok(text.clone()))
     }
 
     fn read_bytes(&self, path: &str) -> Result<Vec<u8>, String> {
-        self.disk.read_bytes(&self.folder.join(path))
+        self.disk.read_bytes(&self.disk.file(&self.folder, path))
+    }
+
+    fn name_of(&self, path: &str) -> Option<String> {
+        let file = self.disk.file(&self.folder, path);
+        (file != self.folder.join(path)).then(|| file.display().to_string())
     }
 
     fn scene_path(&self) -> &str {
@@ -293,7 +303,7 @@ impl<'d> Documents<'d> {
                 return true;
             }
             if seen.len() < MAX_FILES && seen.insert(path.clone()) {
-                let text = self.text(&folder.join(&path)).unwrap_or_default();
+                let text = self.text(&self.disk.file(folder, &path)).unwrap_or_default();
                 waiting.extend(imports(&path, &text));
             }
         }

@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 use std::str::FromStr;
-use std::sync::OnceLock;
+use std::sync::{Mutex, OnceLock};
 use std::time::Instant;
 
 use sdfc_analyze::prepare_with;
@@ -307,6 +307,7 @@ impl Scene {
             program,
             engine,
             reopened: OnceLock::new(),
+            old: Mutex::default(),
             method,
             why,
             size,
@@ -384,6 +385,8 @@ pub struct Painter<'s> {
     engine: Engine,
     /// The engine after the device was lost.
     reopened: OnceLock<Engine>,
+    /// A picture that is no longer needed, whose memory the next one takes.
+    old: Mutex<Option<Image>>,
     method: Method,
     /// Why this method draws, if the field is uncertified.
     why: Option<String>,
@@ -417,7 +420,7 @@ impl Painter<'_> {
         let scene = self.scene;
         let view = self.view(values)?;
         let repetitions = repetitions.max(1);
-        let (frame, spent) =
+        let Repeated { frame, spent, first_drawn } =
             repeated(repetitions, || self.averaged(&view, values, &mut *progress))?;
         let frame_ms = FrameTimes::of(&spent, frame.clock).ok_or(Error::NothingDrawn)?;
         let adapter = self.adapter();
@@ -433,8 +436,8 @@ impl Painter<'_> {
         let unproven = self.unproven(&mut stats.pixels);
         stats.why.extend(unproven.clone().map(|why| ("unproven", why)));
         stats.why.extend(self.why.clone().map(|why| ("method", why)));
-        let first = scene.times.front + scene.times.analyze + milliseconds_since(self.start);
-        stats.set_first_picture(first - frame_ms.median * f64::from(repetitions - 1));
+        let drawn = first_drawn.duration_since(self.start).as_secs_f64() * 1e3;
+        stats.set_first_picture(scene.times.front + scene.times.analyze + drawn);
         let again = self.reopened.get().map(|_| AGAIN.to_owned());
         let notes: Vec<String> = self.note.iter().cloned().chain(again).collect();
         let note = (!notes.is_empty()).then(|| notes.join("; "));
@@ -535,12 +538,19 @@ impl Painter<'_> {
                     mean.image.add(&frame.image);
                     mean.milliseconds += frame.milliseconds;
                     mean.tiles += frame.tiles;
+                    self.keep_memory(frame.image);
                 }
             }
         }
         let mut mean = mean.ok_or(RenderError::Samples(0))?;
         mean.image.divide(self.samples.len() as f32);
         Ok(mean)
+    }
+
+    fn keep_memory(&self, image: Image) {
+        if let Ok(mut old) = self.old.lock() {
+            *old = Some(image);
+        }
     }
 
     /// The engine that draws the next picture.
@@ -589,23 +599,34 @@ impl Painter<'_> {
         match self.engine() {
             Engine::Gpu(pipeline) => {
                 let uniforms = uniform_values(&self.program, values);
-                pipeline.render(view, &uniforms, &options, progress)
+                let old = self.old.lock().ok().and_then(|mut old| old.take());
+                pipeline.render_in_place_of(old, view, &uniforms, &options, progress)
             }
             Engine::Cpu(scene) => scene.render(view, values, self.method, &options, progress),
         }
     }
 }
 
-/// Returns the last frame, and the time of each in milliseconds.
+/// Frames of the same picture.
+struct Repeated {
+    /// The last of them.
+    frame: Frame,
+    /// The time of each in milliseconds.
+    spent: Vec<f64>,
+    /// When the first was drawn.
+    first_drawn: Instant,
+}
+
 fn repeated(
     repetitions: u32,
     mut draw: impl FnMut() -> Result<Frame, RenderError>,
-) -> Result<(Frame, Vec<f64>), RenderError> {
+) -> Result<Repeated, RenderError> {
     let mut frame = draw()?;
+    let first_drawn = Instant::now();
     let mut spent = vec![frame.milliseconds];
     for _ in 1..repetitions {
         frame = draw()?;
         spent.push(frame.milliseconds);
     }
-    Ok((frame, spent))
+    Ok(Repeated { frame, spent, first_drawn })
 }

@@ -10,6 +10,7 @@ import re
 import signal
 import tempfile
 import unittest
+import unittest.mock
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -216,6 +217,12 @@ class Errors(unittest.TestCase):
             (Path(folder) / "scene.sdf").write_text(source)
             scene = sdfc.load(Path(folder) / "scene.sdf")
             self.assertEqual(float(scene.distance([0, 0, 0])), -0.25)
+            (Path(folder) / "other").mkdir()
+            (Path(folder) / "other/scene.sdf").write_text(source)
+            with self.assertRaises(sdfc.CompileError):
+                sdfc.load(Path(folder) / "other/scene.sdf")
+            with unittest.mock.patch.dict(os.environ, {"SDFC_PATH": folder}):
+                sdfc.load(Path(folder) / "other/scene.sdf")
             (Path(folder) / "outside.sdf").write_text('import ball from "../b.sdf"\nball()')
             with self.assertRaises(sdfc.CompileError):
                 sdfc.load(Path(folder) / "outside.sdf")

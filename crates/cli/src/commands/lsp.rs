@@ -52,6 +52,10 @@ impl Disk for Files {
         sdfc_files::read_bytes(path).map_err(|e| e.to_string())
     }
 
+    fn file(&self, folder: &Path, path: &str) -> PathBuf {
+        sdfc_files::Folder::new(folder.to_owned()).file(path)
+    }
+
     fn scenes(&self, folder: &Path) -> Vec<PathBuf> {
         let (mut scenes, mut looked_at) = (Vec::new(), 0);
         let mut open = vec![(folder.to_owned(), 0)];

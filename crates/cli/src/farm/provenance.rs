@@ -241,6 +241,10 @@ impl Resolver for Recorded<'_> {
         self.record(path, &bytes);
         Ok(bytes)
     }
+
+    fn name_of(&self, path: &str) -> Option<String> {
+        self.folder.name_of(path)
+    }
 }
 
 fn sha256(bytes: &[u8]) -> String {

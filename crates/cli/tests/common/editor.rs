@@ -25,11 +25,12 @@ pub struct Editor {
 }
 
 impl Editor {
-    /// Starts the server for a folder. Hovers have pictures.
+    /// Starts the server for a folder, which has shared modules in `.modules`. Hovers have pictures.
     pub fn start(folder: &Path, encodings: Value) -> Self {
         let mut child = Command::new(env!("CARGO_BIN_EXE_sdfc"))
             .args(["lsp", "--stdio"])
             .env("XDG_CACHE_HOME", folder.join(".cache"))
+            .env("SDFC_PATH", folder.join(".modules"))
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
             .spawn()

@@ -176,8 +176,24 @@ impl Pipeline {
         options: &RenderOptions,
         progress: &mut OnProgress<'_>,
     ) -> Result<Frame, RenderError> {
+        self.render_in_place_of(None, view, uniforms, options, progress)
+    }
+
+    /// As [`Pipeline::render`], in the memory of a picture that is no longer needed.
+    ///
+    /// # Errors
+    ///
+    /// As [`Pipeline::render`].
+    pub fn render_in_place_of(
+        &self,
+        old: Option<Image>,
+        view: &View,
+        uniforms: &[[f32; 4]],
+        options: &RenderOptions,
+        progress: &mut OnProgress<'_>,
+    ) -> Result<Frame, RenderError> {
         let region = region_of(view.size, options)?;
-        let mut image = Image::new(region.size, view.footprint())?;
+        let mut image = Image::in_place_of(old, region.size, view.footprint())?;
         let clock = if self.kernel.gpu.has_timestamps() { Clock::Gpu } else { Clock::Wall };
         let draw = |run: &mut Run<'_>, tile| run.draw(view, tile, region.origin, &mut image);
         let drawn = self.tiles(view, uniforms, (region, options.tile_size), progress, draw)?;

@@ -69,9 +69,24 @@ impl Image {
     ///
     /// [`RenderError::Size`] outside the limits, [`RenderError::OutOfMemory`].
     pub fn new(size: [u32; 2], footprint: Footprint) -> Result<Self, RenderError> {
+        Self::in_place_of(None, size, footprint)
+    }
+
+    /// As [`Image::new`], in the memory of a picture that is no longer needed. The system gives
+    /// fresh memory page by page when it is written, which can take longer than copying a picture.
+    ///
+    /// # Errors
+    ///
+    /// As [`Image::new`].
+    pub fn in_place_of(
+        old: Option<Self>,
+        size: [u32; 2],
+        footprint: Footprint,
+    ) -> Result<Self, RenderError> {
         check_size(size)?;
         let count = size[0] as usize * size[1] as usize;
-        let mut pixels = Vec::new();
+        let mut pixels = old.map(|old| old.pixels).unwrap_or_default();
+        pixels.clear();
         pixels.try_reserve_exact(count).map_err(|_| {
             RenderError::OutOfMemory(format!("a picture of {}x{} pixels", size[0], size[1]))
         })?;
@@ -159,7 +174,11 @@ impl Image {
             let [red, green, blue, _] = pixel.color;
             [red, green, blue].map(linear_to_srgb8)
         };
-        self.pixels.iter().flat_map(channels).collect()
+        let mut bytes = vec![0; 3 * self.pixels.len()];
+        for (to, pixel) in bytes.as_chunks_mut().0.iter_mut().zip(&self.pixels) {
+            *to = channels(pixel);
+        }
+        bytes
     }
 }
 

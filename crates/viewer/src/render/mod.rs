@@ -1,6 +1,7 @@
 //! The thread that draws the picture, and information about single pixels.
 
 pub mod handles;
+pub mod images;
 pub mod pacing;
 pub mod picture;
 pub mod pixel_info;

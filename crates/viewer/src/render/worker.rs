@@ -17,11 +17,12 @@ use std::time::{Duration, Instant};
 
 use sdfc::Error;
 use sdfc_render::{
-    EvaluationCounts, Frame, Image, Pipeline, Progress, RenderError, RenderOptions, TileSize, View,
-    milliseconds_since, sample_offsets, uniform_values,
+    Clock, EvaluationCounts, Frame, Image, Pipeline, Progress, RenderError, RenderOptions,
+    TileSize, View, milliseconds_since, sample_offsets, uniform_values,
 };
 
 use crate::latest_channel::LatestChannel;
+use crate::render::images::Images;
 use crate::render::pacing::{PASS_BUDGET_MS, Pacing};
 use crate::render::picture::{MovingPicture, Picture, RenderEvent, RenderRequest};
 use crate::render::view_painter::{ColoredView, first_stride, paint};
@@ -96,11 +97,12 @@ impl From<RenderError> for Stop {
 struct DrawnImage {
     request: Arc<RenderRequest>,
     view: View,
-    /// One ray per pixel.
-    frame: Frame,
+    /// One ray per pixel, and the time that they took.
     image: Arc<Image>,
-    /// The sum of the colours of `samples` rays.
-    sum: Image,
+    milliseconds: f64,
+    clock: Clock,
+    /// The sum of the colours of `samples` rays, if there are several.
+    sum: Option<Image>,
     samples: u32,
     divisor: u32,
     /// The last picture of the request's view, of all pixels or of some.
@@ -113,6 +115,7 @@ struct RenderState<R> {
     report: R,
     drawn: Option<DrawnImage>,
     pacing: Pacing,
+    images: Images,
     /// For pictures that stay on the device of the window.
     on_window: Option<DevicePictures>,
     /// The pixels of the window per pixel of the last picture with the request's rays and view.
@@ -122,9 +125,9 @@ struct RenderState<R> {
 
 impl<R: FnMut(RenderEvent)> RenderState<R> {
     fn new(requests: Arc<LatestChannel<RenderRequest>>, report: R) -> Self {
-        let (pacing, started) = (Pacing::default(), Instant::now());
+        let (pacing, images, started) = (Pacing::default(), Images::default(), Instant::now());
         let (drawn, on_window, shown_scale) = (None, None, None);
-        Self { requests, report, drawn, pacing, on_window, shown_scale, started }
+        Self { requests, report, drawn, pacing, images, on_window, shown_scale, started }
     }
 
     /// Handles a request. A panic in a driver is reported and does not end the thread.
@@ -225,13 +228,19 @@ impl<R: FnMut(RenderEvent)> RenderState<R> {
         let frame = self.frame(request, &view, interruptible)?;
         let pixels = f64::from(view.size[0]) * f64::from(view.size[1]);
         self.pacing.record(request.model.serial, milliseconds_since(start), pixels);
-        let (sum, image) = (frame.image.clone(), Arc::new(frame.image.clone()));
-        let request = Arc::clone(request);
-        let (samples, colored) = (1, None);
-        let drawn = DrawnImage { request, view, frame, image, sum, samples, divisor, colored };
-        let request = Arc::clone(&drawn.request);
-        self.drawn = Some(drawn);
-        self.report_picture(&request, interruptible)
+        let Frame { image, milliseconds, clock, .. } = frame;
+        self.drawn = Some(DrawnImage {
+            request: Arc::clone(request),
+            view,
+            image: self.images.keep(image),
+            milliseconds,
+            clock,
+            sum: None,
+            samples: 1,
+            divisor,
+            colored: None,
+        });
+        self.report_picture(request, interruptible)
     }
 
     /// Draws one ray per pixel.
@@ -255,7 +264,8 @@ impl<R: FnMut(RenderEvent)> RenderState<R> {
         let result = match &model.engine {
             Engine::Gpu(pipeline) => {
                 let uniforms = uniform_values(model.marched(), values);
-                pipeline.render(view, &uniforms, &options, &mut progress)
+                let old = self.images.take();
+                pipeline.render_in_place_of(old, view, &uniforms, &options, &mut progress)
             }
             Engine::Cpu(scene) => scene.render(view, values, model.method, &options, &mut progress),
         };
@@ -285,7 +295,8 @@ impl<R: FnMut(RenderEvent)> RenderState<R> {
             let view = drawn.view.shifted(*offset);
             let frame = self.frame(request, &view, true)?;
             let Some(drawn) = &mut self.drawn else { break };
-            drawn.sum.add(&frame.image);
+            drawn.sum.get_or_insert_with(|| drawn.image.as_ref().clone()).add(&frame.image);
+            self.images.keep(frame.image);
             drawn.samples += 1;
             drawn.colored = None;
             if drawn.samples.is_power_of_two() || !wants_more(drawn) {
@@ -369,11 +380,13 @@ fn colored(
     stride: u32,
     interrupted: IsInterrupted<'_>,
 ) -> Result<ColoredView, Stop> {
-    let mut colors = drawn.sum.clone();
-    colors.divide(drawn.samples as f32);
+    let mean = drawn.sum.clone().map(|mut sum| {
+        sum.divide(drawn.samples as f32);
+        sum
+    });
     let request = &drawn.request;
     let input = ViewInput {
-        colors: &colors,
+        colors: mean.as_ref().unwrap_or(&drawn.image),
         image: &drawn.image,
         view: &drawn.view,
         field: &request.model.field,
@@ -407,8 +420,8 @@ fn picture(drawn: &DrawnImage, colored: &ColoredView, started: Instant) -> Rende
         stride,
         samples: drawn.samples,
         finished: drawn.divisor == 1 && stride == 1 && has_all_samples,
-        milliseconds: drawn.frame.milliseconds,
-        clock: drawn.frame.clock,
+        milliseconds: drawn.milliseconds,
+        clock: drawn.clock,
         latency: milliseconds_since(started),
         evaluations: EvaluationCounts::of(&drawn.image),
         counts: drawn.image.counts(),

@@ -122,10 +122,10 @@ impl Imports {
 
     /// The folders in which a change can change the scene: its own and those of its imports.
     pub fn folders(&self) -> BTreeSet<PathBuf> {
-        let root = self.folder.folder.path();
+        let folder = &self.folder.folder;
         let reads = self.reads.borrow();
-        let parents = reads.keys().filter_map(|(path, _)| root.join(path).parent().map(existing));
-        [existing(root)].into_iter().chain(parents).collect()
+        let parents = reads.keys().filter_map(|(path, _)| folder.file(path).parent().map(existing));
+        [existing(folder.path())].into_iter().chain(parents).collect()
     }
 
     fn record<T: Hash>(&self, path: &str, bytes: bool, result: &T) {
@@ -172,7 +172,7 @@ pub fn path_of(scene: &Path, name: &str) -> PathBuf {
     if scene.file_name().is_some_and(|own| own.to_string_lossy() == name) {
         return scene.to_owned();
     }
-    Folder::of(scene).path().join(name)
+    Folder::of(scene).file(name)
 }
 
 /// The source with some spans replaced. The spans must not overlap.

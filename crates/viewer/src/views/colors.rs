@@ -1,7 +1,5 @@
 //! The colours that views share, and the conversion to sRGB.
 
-use std::sync::LazyLock;
-
 use sdfc_march::PixelBlock;
 use sdfc_render::linear_to_srgb8;
 
@@ -22,20 +20,10 @@ pub const INSIDE: [u8; 3] = [224, 122, 63];
 /// Positive values of the field.
 pub const OUTSIDE: [u8; 3] = [58, 124, 165];
 
-/// The sRGB colour of a pixel, from a table: a view is repainted often, and a power for each
-/// channel would take longer than everything else. At the steepest part of the curve the error is a
-/// fifth of a level.
+/// The sRGB colour of a pixel.
 pub fn to_srgb(pixel: &PixelBlock) -> [u8; 3] {
-    const STEPS: usize = 1 << 14;
-    static TABLE: LazyLock<Vec<u8>> = LazyLock::new(|| {
-        (0..=STEPS).map(|step| linear_to_srgb8(step as f32 / STEPS as f32)).collect()
-    });
     let [red, green, blue, _] = pixel.color;
-    // `as` saturates and turns NaN into 0.
-    [red, green, blue].map(|light| {
-        let step = (light * STEPS as f32 + 0.5) as usize;
-        TABLE[step.min(STEPS)]
-    })
+    [red, green, blue].map(linear_to_srgb8)
 }
 
 /// A darkened grey of the same luminance, against which marked pixels stand out.

@@ -150,13 +150,17 @@ def compile(
 def load(path: PathLike, *, values: Mapping[str, Value] | None = None) -> Scene:
     """Reads a file and compiles it, with the files below its folder that it imports.
 
-    ``values`` and exceptions are those of :func:`compile`. Raises ``OSError`` if the file cannot
-    be read or is larger than 64 MiB. Imports cannot follow links out of the folder.
+    Files that are not there are looked for in the folders of the environment variable
+    ``SDFC_PATH``. ``values`` and exceptions are those of :func:`compile`. Raises ``OSError`` if the
+    file cannot be read or is larger than 64 MiB. Imports cannot follow links out of the folder.
     """
     path = Path(path)
-    folder = path.parent.resolve()
+    modules = [part for part in os.environ.get("SDFC_PATH", "").split(os.pathsep) if part]
+    folders = [path.parent, *map(Path, modules)]
 
     def read(below: str) -> bytes:
+        found = (folder for folder in folders if (folder / below).exists())
+        folder = next(found, path.parent).resolve()
         file = (folder / below).resolve()
         if folder not in file.parents:
             raise PermissionError(f"{below} is outside the folder of the scene")

@@ -69,7 +69,7 @@ impl Files {
         // Drawing prints the diagnostics.
         drop(Compiler::new().resolver(&noted).check(&input.name, &input.text));
         let Noted { folder, paths } = noted;
-        let others = paths.into_inner().into_iter().map(|path| folder.path().join(path));
+        let others = paths.into_inner().into_iter().map(|path| folder.file(&path));
         let paths = std::iter::once(scene.to_owned()).chain(others);
         Ok(Self(paths.map(|path| (path.clone(), state(&path))).collect()))
     }
