@@ -7,7 +7,7 @@
 use sdfc_graph::{Bounds, Dim, ExpandError, Expander, Graph, Guard, NodeId, ShapeId, reachable};
 
 use crate::analytic::boxes::MARGIN;
-use crate::analytic::operands::{MarchedOperand, bounding_shape};
+use crate::analytic::operands::{MarchedOperand, whole_shape};
 use crate::certify::promise::Promise;
 use crate::certify::quality::Qualities;
 use crate::cost::cost;
@@ -17,29 +17,65 @@ use crate::cost::cost;
 const LEAST_OPERATIONS: usize = 200;
 /// Largest number of guards. Each is a branch.
 const MAX_GUARDS: usize = 16;
+/// The fraction of its size by which a box is enlarged that limits a field from below: so much that
+/// the box is never nearer to the limit of precision than the surface in it, where it would decide
+/// the normal.
+const LIMIT_MARGIN: f64 = 0.02;
 
-/// The guards of the operands whose field is exact outside and bounded, with their shapes. `fields`
-/// are the roots that the guards are for, `values` the fields of the operands in the same graph.
+/// Limits costly operands whose field is only a lower bound of the distance: the value becomes the
+/// maximum of the field and of the signed distance to a box around the operand. Both are lower
+/// bounds, so their maximum is one, and it is at least the distance to the box: the operand can be
+/// guarded. The surface stays where it is, because all of it lies within the box.
+///
+/// Returns the pairs of old and new values.
+pub(crate) fn limit_operands(
+    graph: &mut Graph,
+    expander: &mut Expander,
+    (bounds, qualities): (&mut Bounds, &Qualities),
+    operands: &mut [MarchedOperand],
+) -> Result<Vec<(NodeId, NodeId)>, ExpandError> {
+    let mut replaced = Vec::new();
+    for operand in operands {
+        let is_wanted = !is_above_box(qualities, operand.shape)
+            && cost(graph, &[operand.value]).operations >= LEAST_OPERATIONS;
+        if !is_wanted || replaced.len() == MAX_GUARDS {
+            continue;
+        }
+        let limit = distance_to_box(graph, expander, bounds, operand, LIMIT_MARGIN)?;
+        if let Some(limit) = limit {
+            let value = graph.max(operand.value, limit);
+            replaced.push((operand.value, value));
+            (operand.value, operand.limit) = (value, Some(limit));
+        }
+    }
+    Ok(replaced)
+}
+
+/// The guards of the operands that are limited, or exact outside and bounded, with their shapes.
+/// `fields` are the roots that the guards are for. `values` are the fields of the operands in the
+/// same graph, each with its limit, or again the field.
 pub(crate) fn guards(
     graph: &mut Graph,
     expander: &mut Expander,
     (bounds, qualities): (&mut Bounds, &Qualities),
     operands: &[MarchedOperand],
-    values: &[NodeId],
+    values: &[[NodeId; 2]],
     fields: &[NodeId],
 ) -> Result<Vec<(ShapeId, Guard)>, ExpandError> {
     let mut guards = Vec::new();
     let kept = reachable(graph, fields);
-    for (operand, &value) in operands.iter().zip(values) {
-        let is_wanted = is_above_box(qualities, operand.shape)
+    for (operand, &[value, limit]) in operands.iter().zip(values) {
+        let is_wanted = (operand.limit.is_some() || is_above_box(qualities, operand.shape))
             && kept.binary_search(&value).is_ok()
             && cost(graph, &[value]).operations >= LEAST_OPERATIONS;
         if !is_wanted || guards.len() == MAX_GUARDS {
             continue;
         }
-        if let Some(bound) = distance_to_box(graph, expander, bounds, operand)? {
-            guards.push((operand.shape, Guard { operand: value, bound }));
-        }
+        let bound = match operand.limit {
+            Some(_) => Some(limit),
+            None => distance_to_box(graph, expander, bounds, operand, MARGIN)?,
+        };
+        guards.extend(bound.map(|bound| (operand.shape, Guard { operand: value, bound })));
     }
     Ok(guards)
 }
@@ -61,8 +97,10 @@ pub(crate) fn guard_of_region(
         *end = graph.swizzle(*end, &[0, 1]);
     }
     let has_ends = ends.iter().all(|&end| graph.is_finite(end));
-    Ok(has_ends
-        .then(|| Guard { operand: value, bound: signed_distance_to_box(graph, point, ends) }))
+    Ok(has_ends.then(|| Guard {
+        operand: value,
+        bound: signed_distance_to_box(graph, point, ends, MARGIN),
+    }))
 }
 
 fn is_above_box(qualities: &Qualities, shape: ShapeId) -> bool {
@@ -77,21 +115,27 @@ fn distance_to_box(
     expander: &mut Expander,
     bounds: &mut Bounds,
     operand: &MarchedOperand,
+    margin: f64,
 ) -> Result<Option<NodeId>, ExpandError> {
-    let Some(shape) = bounding_shape(graph, std::slice::from_ref(operand)) else { return Ok(None) };
+    let shape = whole_shape(graph, operand);
     let point = graph.point(0, Dim::Three);
     let [lo, hi] = bounds.of(graph, shape);
     let [lo, hi] = [expander.node(graph, lo, &[point])?, expander.node(graph, hi, &[point])?];
     if ![lo, hi].into_iter().all(|corner| graph.is_finite(corner)) {
         return Ok(None);
     }
-    Ok(Some(signed_distance_to_box(graph, point, [lo, hi])))
+    Ok(Some(signed_distance_to_box(graph, point, [lo, hi], margin)))
 }
 
-/// The signed distance from a point to a box or a rectangle that is a little larger than one with
-/// these corners.
-fn signed_distance_to_box(graph: &mut Graph, point: NodeId, [lo, hi]: [NodeId; 2]) -> NodeId {
-    let [half, margin] = [0.5, MARGIN].map(|factor| graph.number(factor));
+/// The signed distance from a point to a box or a rectangle that is larger than one with these
+/// corners by a fraction of its size and of its distance from the origin.
+fn signed_distance_to_box(
+    graph: &mut Graph,
+    point: NodeId,
+    [lo, hi]: [NodeId; 2],
+    margin: f64,
+) -> NodeId {
+    let [half, margin] = [0.5, margin].map(|factor| graph.number(factor));
     let [sum, size] = [graph.add(hi, lo), graph.sub(hi, lo)];
     let [center, half] = [graph.mul(sum, half), graph.mul(size, half)];
     let far = graph.abs(center);

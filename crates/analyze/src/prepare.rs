@@ -12,7 +12,7 @@ use crate::certify::conservative::conservative_field;
 use crate::certify::inexact::inexact_operators;
 use crate::certify::quality::Qualities;
 use crate::cost::{Cost, cost};
-use crate::guards::guards;
+use crate::guards::{guards, limit_operands};
 use crate::leaves::count_leaves;
 use crate::planar::planar_picture;
 use crate::report::{Report, shape_reports};
@@ -105,17 +105,27 @@ fn flatten(
     if uses_loops {
         march_similar_operands(graph, &mut operands);
     }
-    let mut flat = fields(graph, field.distance, &operands);
+    let mut whole = field.distance;
+    let is_union = operands.analytic.len() + operands.marched.len() > 1;
+    if is_union && field.uncertified.is_empty() && !(uses_loops && has_similar(graph, &operands)) {
+        let (known, marched) = ((&mut bounds, &qualities), &mut operands.marched);
+        let limited = limit_operands(graph, &mut expander, known, marched)?;
+        whole = substitute(graph, whole, &limited);
+    }
+    let mut flat = fields(graph, whole, &operands);
     let count = flat.len();
     if has_material {
         flat.extend(expander.material(graph, root, point)?);
     }
     let with_material = flat.len();
-    flat.extend(operands.marched.iter().map(|operand| operand.value));
+    for operand in &operands.marched {
+        flat.extend([operand.value, operand.limit.unwrap_or(operand.value)]);
+    }
     let chains = if uses_loops { expander.material_chains(graph)? } else { Vec::new() };
     let (folded, chains) = fold_with_chains(graph, &flat, chains);
     program.names = folded.names(graph, &expander.names());
     let (flat, marched) = folded.roots.split_at(with_material);
+    let (marched, _) = marched.as_chunks();
     let (fields, material) = flat.split_at(count);
     let (mut fields, mut material, mut loops) = (fields.to_vec(), material.to_vec(), Vec::new());
     if uses_loops {
@@ -206,6 +216,12 @@ fn march_similar_operands(graph: &mut Graph, operands: &mut Operands) {
     many.sort_unstable();
     operands.make_marched(&many);
     operands.marched.iter_mut().for_each(|operand| operand.local = None);
+}
+
+/// True if some marched operands become loops, which know the minima of operands by their nodes.
+fn has_similar(graph: &mut Graph, operands: &Operands) -> bool {
+    let values: Vec<NodeId> = operands.marched.iter().map(|operand| operand.value).collect();
+    !similar_groups(graph, &values).is_empty()
 }
 
 /// The field of the whole scene. If there are analytic operands, their field follows, and then that

@@ -25,6 +25,11 @@ const CAMERA: &str = "camera(eye: [1.2, 1.1, 3], target: [0, 0.2, 0], fov: 40deg
 
 const PAGE: &str = "background(#123)\ncamera(eye: [0, 0.2, 1], target: [0, 0.2, 0], height: 1.6)\n";
 
+const SWEEP: &str =
+    "sweep(circle(0.25), [for i in 0..9: [cos(i * 50deg), 0.2 * i - 0.8, sin(i * 50deg)]])";
+const BLENDED: &str = "union(text(\"sd\", size: 0.8, align: \"center\").extrude(0.2), \
+                       box([2, 0.2, 0.4]), blend: smooth(0.1))";
+
 /// A test of a scene.
 type Test = fn(&Scene) -> Result<(), Failed>;
 
@@ -47,6 +52,8 @@ fn main() {
         ("two words", format!("{WORD}\n{WORD}.translate([0.3, 0.9, 0.2])\nplane(y: -0.1)\n")),
         ("words alone", format!("{WORD}\n{WORD}.translate(y: 0.9)\n")),
         ("an outline of many corners", format!("{outline}.extrude(0.4)\nplane(y: -1.4)\n")),
+        ("a sweep, whose field is a bound", format!("{SWEEP}\nplane(y: -1.2)\n")),
+        ("blended text, whose field is a bound", format!("{BLENDED}\nplane(y: -1.2)\n")),
         (
             "text that a param moves",
             format!("param s = 0.2 in -1..1\n{WORD}.translate(x: s)\nplane(y: -0.1)\n"),
@@ -73,6 +80,7 @@ fn main() {
             trials.push(trial.with_ignored_flag(what == DRAWN && testing::without_gpu()));
         }
     }
+    trials.push(Trial::test("limit of a sweep", || is_a_closer_bound(SWEEP)));
     libtest_mimic::run(&Arguments::from_args(), trials).exit();
 }
 
@@ -115,6 +123,39 @@ fn same_values(scene: &Scene) -> Result<(), Failed> {
         if (old[0] - new[0]).abs() > PRECISION {
             return Err(format!("at {point:?} {} became {}", old[0], new[0]).into());
         }
+    }
+    Ok(())
+}
+
+/// Beside a floor, the field of a shape whose field is only a lower bound is limited from below. It
+/// has the sign that it has alone, exceeds no distance to a point of the shape, and is a closer
+/// bound somewhere.
+fn is_a_closer_bound(shape: &str) -> Result<(), Failed> {
+    let alone = compiled(shape);
+    let beside = compiled(&format!("{shape}\nplane(y: -9)\n"));
+    let frame = FrameValues::default();
+    let distance = alone.program().distance.ok_or("nothing is drawn")?;
+    let [guard] = beside.program().guards[..] else { return Err("one shape is guarded".into()) };
+    let plain = values(alone.program(), &[distance], &frame);
+    let limited = values(beside.program(), &[guard.operand], &frame);
+    let fields = || points().zip(plain.iter().zip(&limited)).map(|(p, (a, b))| (p, a[0], b[0]));
+    let inside: Vec<_> = fields().filter(|(_, plain, _)| *plain < 0.0).map(|it| it.0).collect();
+    let mut closer = 0;
+    for (point, plain, limited) in fields() {
+        if (plain < 0.0) != (limited < 0.0) || plain > limited + PRECISION && plain > 0.0 {
+            return Err(format!("at {point:?} {plain} became {limited}").into());
+        }
+        let away = |other: &[f64; 3]| {
+            point.iter().zip(other).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt()
+        };
+        let nearest = inside.iter().map(away).fold(f64::INFINITY, f64::min);
+        if limited > nearest + PRECISION {
+            return Err(format!("at {point:?} {limited} exceeds {nearest}").into());
+        }
+        closer += u32::from(limited > plain + 0.01);
+    }
+    if inside.len() < 10 || closer == 0 {
+        return Err(format!("{} points inside, {closer} closer", inside.len()).into());
     }
     Ok(())
 }

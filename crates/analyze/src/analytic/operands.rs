@@ -32,7 +32,7 @@ impl AnalyticOperand {
     fn into_marched(self) -> MarchedOperand {
         let Self { shape, value, intervals, point, scale } = self;
         let local = intervals.reach.is_some().then_some(intervals);
-        MarchedOperand { shape, value, local, bounding: shape, point, scale }
+        MarchedOperand { shape, value, limit: None, local, bounding: shape, point, scale }
     }
 }
 
@@ -71,6 +71,8 @@ pub(crate) struct MarchedOperand {
     pub shape: ShapeId,
     /// Its conservative field.
     pub value: NodeId,
+    /// The signed distance to a box around it that its value is nowhere less than.
+    pub limit: Option<NodeId>,
     /// The intervals in which a ray is inside, known up to some distance from the ray's origin.
     pub local: Option<RayIntervals>,
     /// A shape that bounds the part of the operand that is not analytic.
@@ -91,4 +93,11 @@ pub(crate) fn bounding_shape(graph: &mut Graph, marched: &[MarchedOperand]) -> O
     let formula = minimum(graph, values)?;
     let children = marched.iter().map(|operand| operand.bounding).collect();
     Some(unnamed_shape(graph, formula, children))
+}
+
+/// The shape of an operand where it is in the scene, with its analytic part.
+pub(crate) fn whole_shape(graph: &mut Graph, operand: &MarchedOperand) -> ShapeId {
+    let sample = graph.sample(operand.shape, operand.point);
+    let formula = graph.mul(operand.scale, sample);
+    unnamed_shape(graph, formula, vec![operand.shape])
 }

@@ -132,8 +132,15 @@ impl Splitter<'_> {
                 let LocalRay { point, scale, .. } = *ray;
                 let (analytic, bounding) =
                     self.split_blend(shape, ray)?.unwrap_or((Vec::new(), shape));
-                let marched =
-                    vec![MarchedOperand { shape, value, local: None, bounding, point, scale }];
+                let marched = vec![MarchedOperand {
+                    shape,
+                    value,
+                    limit: None,
+                    local: None,
+                    bounding,
+                    point,
+                    scale,
+                }];
                 Ok(Operands { analytic, marched })
             }
         }
