@@ -16,7 +16,7 @@ type Vector = [f64; 3];
 /// Columns and rows of the picture of the studio.
 const SIZE: [usize; 2] = [512, 256];
 
-/// A lamp behind a white sheet: the direction of its middle, half its width and height at distance
+/// A light behind a white sheet: the direction of its middle, half its width and height at distance
 /// 1, and its light.
 struct SoftBox {
     towards: Vector,
@@ -24,7 +24,7 @@ struct SoftBox {
     light: Vector,
 }
 
-const LAMPS: [SoftBox; 4] = [
+const SOFT_BOXES: [SoftBox; 4] = [
     SoftBox { towards: [-0.75, 0.55, 0.6], half: [0.55, 0.4], light: [9.0, 8.4, 7.4] },
     SoftBox { towards: [0.95, 0.25, 0.15], half: [0.14, 0.75], light: [4.6, 5.4, 6.4] },
     SoftBox { towards: [0.1, 1.0, -0.1], half: [0.7, 0.35], light: [3.4, 3.4, 3.4] },
@@ -46,8 +46,8 @@ fn cross(a: Vector, b: Vector) -> Vector {
     })
 }
 
-/// The light of the studio in a direction: lamps in a dark room with a paler backdrop. All but the
-/// lamps depends on the height alone, so that rows compress well.
+/// The light of the studio in a direction: soft boxes in a dark room with a paler backdrop. All
+/// but these depends on the height alone, so that rows compress well.
 fn studio(direction: Vector) -> Vector {
     let height = direction[1];
     let wall = 0.1 + 0.24 * (-(height - 0.05).powi(2) / 0.08).exp();
@@ -55,7 +55,7 @@ fn studio(direction: Vector) -> Vector {
     let edge = ((height + 0.12) / 0.1).clamp(0.0, 1.0);
     let room = floor + edge * edge * (3.0 - 2.0 * edge) * (wall - floor);
     let mut light = [0.96 * room, room, 1.06 * room];
-    for SoftBox { towards, half, light: lamp } in &LAMPS {
+    for SoftBox { towards, half, light: own } in &SOFT_BOXES {
         let middle = normalized(*towards);
         let nearness = dot(direction, middle);
         if nearness <= 0.0 {
@@ -69,7 +69,7 @@ fn studio(direction: Vector) -> Vector {
             at.clamp(0.0, 1.0)
         };
         let mask = inside(right, half[0]) * inside(up, half[1]);
-        light = [0, 1, 2].map(|lane| light[lane] + mask * (lamp[lane] - light[lane]));
+        light = [0, 1, 2].map(|lane| light[lane] + mask * (own[lane] - light[lane]));
     }
     light
 }
@@ -179,9 +179,9 @@ fn light_comes_from_the_side_where_the_picture_is_bright() {
     let sides: Vec<Vector> =
         sides.into_iter().flat_map(|side| [side, side.map(|lane: f64| -lane)]).collect();
     for &lit in &sides {
-        let lamp = |to: Vector| if dot(to, lit) > 0.8 { [5.0; 3] } else { [0.1; 3] };
+        let spot = |to: Vector| if dot(to, lit) > 0.8 { [5.0; 3] } else { [0.1; 3] };
         let Surroundings { levels, irradiance } =
-            analyze(&picture([128, 64], lamp)).expect("it is a picture");
+            analyze(&picture([128, 64], spot)).expect("it is a picture");
         for &side in &sides {
             let to = side.map(|lane| lane as f32);
             let (is_lit, is_opposite) = (side == lit, dot(side, lit) < -0.5);

@@ -20,15 +20,15 @@ struct Pictures;
 
 impl Pictures {
     fn light(name: &str, to: Vector) -> Option<Vector> {
-        let lamp =
+        let spot =
             |axis: usize, sign: f64| if sign * to[axis] > 0.8 { [4.0; 3] } else { [0.125; 3] };
         Some(match name {
             "even.hdr" => [0.5, 0.25, 0.75],
-            "right.hdr" => lamp(0, 1.0),
-            "left.hdr" => lamp(0, -1.0),
-            "above.hdr" => lamp(1, 1.0),
-            "below.hdr" => lamp(1, -1.0),
-            "front.hdr" => lamp(2, 1.0),
+            "right.hdr" => spot(0, 1.0),
+            "left.hdr" => spot(0, -1.0),
+            "above.hdr" => spot(1, 1.0),
+            "below.hdr" => spot(1, -1.0),
+            "front.hdr" => spot(2, 1.0),
             "stripes.hdr" => [0.5 + 0.25 * (9.0 * to[0]).sin(), 0.25 + 0.125 * to[1], 0.5],
             _ => return None,
         })
@@ -227,7 +227,7 @@ fn the_studio_is_formatted_and_drawn() {
     let count = |range: std::ops::RangeInclusive<u8>| {
         picture.chunks(3).filter(|it| it.iter().all(|lane| range.contains(lane))).count()
     };
-    // The lamps in the ball, and what no light reaches.
+    // The lights in the ball, and what no light reaches.
     assert!(count(245..=255) > 10 && count(0..=40) > 10, "{} {}", count(245..=255), count(0..=40));
 }
 

@@ -141,7 +141,7 @@ fn irradiance(graph: &mut Graph, coefficients: &Coefficients, normal: NodeId) ->
         let term = graph.mul(coefficient, value);
         sum = graph.add(sum, term);
     }
-    // Opposite a small bright lamp the polynomial is a little below 0.
+    // Opposite a small bright light the polynomial is a little below 0.
     let zero = graph.number(0.0);
     graph.max(sum, zero)
 }

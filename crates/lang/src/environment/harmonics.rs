@@ -28,8 +28,8 @@ pub fn irradiance(map: &Octahedron) -> Coefficients {
     let mut sums = [[0.0; 3]; 9];
     for (direction, solid_angle, light) in map.weighted() {
         for (sum, value) in sums.iter_mut().zip(basis(direction.map(f64::from))) {
-            for lane in 0..3 {
-                sum[lane] += solid_angle * value * f64::from(light[lane]);
+            for (sum, lane) in sum.iter_mut().zip(light) {
+                *sum += solid_angle * value * f64::from(lane);
             }
         }
     }

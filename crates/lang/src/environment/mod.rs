@@ -43,7 +43,8 @@ pub struct Surroundings {
 pub fn analyze(bytes: &[u8]) -> Result<Surroundings, String> {
     let panorama = Panorama::read(bytes)?;
     let side = prefilter::sharp_side(panorama.size[0]);
-    let sharp = Octahedron::of_panorama(side, &panorama);
+    // Where texels are coarsest, the panorama's pixels are two thirds as wide.
+    let sharp = Octahedron::averaged(side, |to| panorama.light(to));
     let irradiance = harmonics::irradiance(&sharp);
     Ok(Surroundings { levels: prefilter::levels(sharp), irradiance })
 }
@@ -88,7 +89,7 @@ impl<'r> Pictures<'r> {
 const REMEMBERED: usize = 2;
 
 /// As [`analyze`], but at once for the last pictures: an editor compiles a scene again after each
-/// change. Pictures are told apart by their length and two hashes.
+/// change. Their length and two hashes identify them.
 fn remembered(bytes: &[u8]) -> Result<Arc<Surroundings>, String> {
     type Key = (usize, [u64; 2]);
     static LAST: Mutex<Vec<(Key, Arc<Surroundings>)>> = Mutex::new(Vec::new());

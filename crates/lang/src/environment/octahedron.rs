@@ -7,8 +7,6 @@
 //! addition, multiplication and one division. A map of longitude and latitude needs arc functions,
 //! which differ between GPUs, and has poles.
 
-use super::panorama::Panorama;
-
 /// A vector or a colour.
 pub type Vector = [f32; 3];
 
@@ -30,9 +28,8 @@ impl Octahedron {
         Self { side, texels }
     }
 
-    /// The map of a panorama. Each texel is the mean of four samples of its cell: where texels are
-    /// coarsest, the panorama's pixels are two thirds as wide.
-    pub fn of_panorama(side: usize, panorama: &Panorama) -> Self {
+    /// The map of a function of the direction, with the mean of four samples for each texel.
+    pub fn averaged(side: usize, light: impl Fn(Vector) -> Vector) -> Self {
         let cell = 2.0 / (side - 1) as f32;
         let middle = |index: usize| cell * index as f32 - 1.0;
         let rows = (0..side).flat_map(|row| (0..side).map(move |column| (column, row)));
@@ -41,7 +38,7 @@ impl Octahedron {
             let corners = [[-0.25, -0.25], [0.25, -0.25], [-0.25, 0.25], [0.25, 0.25]];
             let samples = corners.map(|[dx, dy]| {
                 let at = [x + cell * dx, y + cell * dy];
-                panorama.light(direction(inside(at)))
+                light(direction(inside(at)))
             });
             [0, 1, 2].map(|lane| 0.25 * samples.map(|sample| sample[lane]).iter().sum::<f32>())
         };
@@ -66,25 +63,32 @@ impl Octahedron {
     }
 
     /// The texels with their directions and the solid angles that each covers; all together cover
-    /// 4 pi. At a point of the octahedron with the distance r from the middle, an area of the
-    /// square covers 1 / r^3 times as much.
+    /// 4 pi.
     pub fn weighted(&self) -> impl Iterator<Item = (Vector, f64, Vector)> + '_ {
-        let steps = self.side - 1;
-        let edge = move |index: usize| if index == 0 || index == steps { 0.5 } else { 1.0 };
-        let middle = move |index: usize| 2.0 * index as f32 / steps as f32 - 1.0;
-        let weight = move |index: usize| {
-            let (x, y) = (index % self.side, index / self.side);
-            let direction = direction([middle(x), middle(y)]);
-            // The point is the direction divided by the sum of its components.
-            let nearness: f64 = direction.iter().map(|lane| f64::from(lane.abs())).sum();
-            (direction, edge(x) * edge(y) * (4.0 / (steps * steps) as f64) * nearness.powi(3))
-        };
-        let total: f64 = (0..self.texels.len()).map(|index| weight(index).1).sum();
-        let factor = 4.0 * std::f64::consts::PI / total;
-        self.texels.iter().enumerate().map(move |(index, &texel)| {
-            let (direction, weight) = weight(index);
-            (direction, factor * weight, texel)
+        let weights: Vec<f64> = (0..self.texels.len()).map(|index| self.weight(index)).collect();
+        let factor = 4.0 * std::f64::consts::PI / weights.iter().sum::<f64>();
+        self.texels.iter().zip(weights).enumerate().map(move |(index, (&texel, weight))| {
+            (direction(self.middle(index)), factor * weight, texel)
         })
+    }
+
+    /// The position of a texel in the square from -1 to 1.
+    fn middle(&self, index: usize) -> [f32; 2] {
+        let steps = (self.side - 1) as f32;
+        [index % self.side, index / self.side].map(|at| 2.0 * at as f32 / steps - 1.0)
+    }
+
+    /// A number in proportion to the solid angle of a texel. At a point of the octahedron with the
+    /// distance r from the middle, an area of the square covers 1 / r^3 times as much.
+    fn weight(&self, index: usize) -> f64 {
+        let last = self.side - 1;
+        let edges = [index % self.side, index / self.side].map(|at| at == 0 || at == last);
+        let area: f64 = edges.map(|is_edge| if is_edge { 0.5 } else { 1.0 }).iter().product();
+        let [x, z] = self.middle(index).map(f64::from);
+        let y = 1.0 - x.abs() - z.abs();
+        let [x, z] = if y < 0.0 { [1.0 - z.abs(), 1.0 - x.abs()] } else { [x, z] };
+        let square = x * x + y * y + z * z;
+        area / (square * square.sqrt())
     }
 
     /// The map with half as many texels along a side. Each texel of this one is shared among the
@@ -92,16 +96,17 @@ impl Octahedron {
     pub fn halved(&self) -> Self {
         let side = (self.side - 1) / 2 + 1;
         let mut sums = vec![[0.0f64; 4]; side * side];
-        for (index, (_, solid_angle, texel)) in self.weighted().enumerate() {
+        for (index, texel) in self.texels.iter().enumerate() {
             let (x, y) = (index % self.side, index / self.side);
+            let solid_angle = self.weight(index);
             for (row, down) in nearest(y) {
                 for (column, along) in nearest(x) {
                     let weight = solid_angle * along * down;
-                    let sum = &mut sums[row * side + column];
-                    for lane in 0..3 {
-                        sum[lane] += weight * f64::from(texel[lane]);
+                    let [red, green, blue] = texel.map(f64::from);
+                    let sum = sums[row * side + column].iter_mut();
+                    for (sum, lane) in sum.zip([red, green, blue, 1.0]) {
+                        *sum += weight * lane;
                     }
-                    sum[3] += weight;
                 }
             }
         }
@@ -223,6 +228,16 @@ mod tests {
         for lane in 0..3 {
             let [a, b] = [&uneven, &uneven.halved()].map(|map| mean(map, lane));
             assert!((a - b).abs() < 2e-3, "{a} {b}");
+        }
+    }
+
+    #[test]
+    fn halving_folds_the_border() {
+        let map = Octahedron::of(33, |[x, y, z]| [x + 2.0, (x - z).exp(), y]).halved();
+        let last = map.side - 1;
+        for index in 0..=last {
+            assert_eq!(map.texels[index], map.texels[last - index]);
+            assert_eq!(map.texels[index * map.side], map.texels[(last - index) * map.side]);
         }
     }
 

@@ -16,7 +16,7 @@ pub const LEVELS: usize = 6;
 /// quarter of a turn is half as many texels as a side.
 const SIDES: [usize; LEVELS] = [513, 129, 65, 33, 17, 17];
 /// The number of directions of a lobe.
-const DIRECTIONS: u32 = 128;
+const DIRECTIONS: u32 = 64;
 /// The number of halved maps that lobes read.
 const HALVED: usize = 7;
 
@@ -67,8 +67,8 @@ fn blurred(maps: &[Octahedron], roughness: f32, side: usize) -> Octahedron {
         for LobeDirection { direction: [x, y, z], weight, map } in &lobe {
             let to = [0, 1, 2].map(|lane| x * right[lane] + y * up[lane] + z * normal[lane]);
             let light = maps[*map].light(to);
-            for lane in 0..3 {
-                sum[lane] += weight * light[lane];
+            for (sum, lane) in sum.iter_mut().zip(light) {
+                *sum += weight * lane;
             }
         }
         sum.map(|sum| sum / total)
@@ -152,9 +152,9 @@ mod tests {
     }
 
     #[test]
-    fn a_lamp_is_blurred_by_the_lobe() {
-        let lamp = |[x, y, z]: Vector| [if x + y > 1.2 && z > 0.0 { 9.0 } else { 0.5 }; 3];
-        let sharp = Octahedron::of(257, lamp);
+    fn a_light_is_blurred_by_the_lobe() {
+        let spot = |[x, y, z]: Vector| [if x + y > 1.2 && z > 0.0 { 9.0 } else { 0.5 }; 3];
+        let sharp = Octahedron::of(257, spot);
         for (level, map) in levels(sharp.clone()).iter().enumerate().skip(2) {
             for (normal, _, found) in map.weighted().step_by(7) {
                 let expected = summed(&sharp, roughness(level), normal);

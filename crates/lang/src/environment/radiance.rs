@@ -220,13 +220,14 @@ mod tests {
         let row = rows(&file("-Y 2 +X 4", &[&pixels[..], &pixels[..12], &[0; 4]].concat()));
         let red = [1.0, 0.5, 0.0];
         assert_eq!(row.unwrap()[0], [red, red, red, [0.0, 0.0, 1.0]]);
+        // Each pixel begins to count anew.
+        let [a, b, again] = [[128, 0, 0, 129], [0, 128, 0, 129], [1, 1, 1, 1]];
+        let row = rows(&file("-Y 2 +X 4", &[a, again, b, again].concat().repeat(2))).unwrap();
+        let [red, green] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+        assert_eq!(row[1], [red, red, green, green]);
         // 4 + 256 repetitions.
         let long = [&[128, 128, 128, 129, 1, 1, 1, 4, 1, 1, 1, 1][..], &[0; 4 * 255]].concat();
-        let both = file("-Y 258 +X 516", &[0u8; 0]);
-        let mut both = both;
-        for _ in 0..258 {
-            both.extend(&long);
-        }
+        let both = file("-Y 258 +X 516", &long.repeat(258));
         let lit = |row: &Vec<Pixel>| row.iter().filter(|pixel| pixel[0] == 1.0).count();
         assert!(rows(&both).unwrap().iter().all(|row| lit(row) == 261));
     }
@@ -242,6 +243,12 @@ mod tests {
         let blue = |value: f32| value / 128.0;
         assert_eq!(found[3][1], [1.0, 0.5, blue(2.0)]);
         assert_eq!((found[3][2], found[3][7]), ([1.0, 1.0, blue(3.0)], [0.0; 3]));
+        // The most plain bytes, and the longest runs.
+        let plain = [&[128][..], &[128; 128]].concat();
+        let exponent = [128 + 127, 129, 1, 129];
+        let row = [&[2, 2, 0, 128][..], &plain, &plain, &plain, &exponent].concat();
+        let found = rows(&file("-Y 64 +X 128", &row.repeat(64))).unwrap();
+        assert!(found[63].iter().all(|&pixel| pixel == [1.0; 3]));
     }
 
     #[test]
