@@ -125,7 +125,7 @@ impl Octahedron {
 
 /// The texels of a map of half the side that are nearest to a texel, and their weights.
 fn nearest(index: usize) -> impl Iterator<Item = (usize, f64)> {
-    let weight = if index % 2 == 0 { 1.0 } else { 0.5 };
+    let weight = if index.is_multiple_of(2) { 1.0 } else { 0.5 };
     [(index / 2, weight), (index / 2 + 1, weight)].into_iter().take(1 + index % 2)
 }
 
