@@ -105,6 +105,8 @@ pub(crate) fn planar_picture(
         let at = graph.add(point, origin);
         guards = guard_layers(graph, scene, &qualities, &mut layers, at)?;
     }
+    // Regions are drawn as written, without light.
+    program.settings.environment = None;
     let background = program.settings.background;
     let background = background.unwrap_or_else(|| graph.constant(Type::Vec3, &BACKGROUND));
     let mut color = layered(graph, background, &layers, point);

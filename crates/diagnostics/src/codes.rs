@@ -214,6 +214,12 @@ codes! {
          surface. So colours and the other properties of materials can read them, but no formula \
          of a shape, no argument that moves a shape, and no setting."
         "read them in a colour, a roughness or another property of a material";
+    IMAGE "E0415" "Picture of the surroundings that cannot be used"
+        "`sky(image: ...)` reads a Radiance picture (`.hdr`, format `32-bit_rle_rgbe`) from the \
+         folder of the scene. It shows all directions by longitude and latitude, so it is twice as \
+         wide as it is high; 8192 by 4096 pixels are the most. Programs without access to files, \
+         such as the playground, cannot read it."
+        "name a picture in the folder of the scene, or write a gradient: sky()";
 
     PROMISE_BROKEN "E0502" "Violated clause"
         "Every command tests the clauses of the scene's own shapes and functions at a fixed number \

@@ -3,11 +3,13 @@
 //!
 //! A scalar operand of a vector operation is splatted to the vector's width.
 
+use std::sync::Arc;
+
 use crate::graph::Graph;
 use crate::loops::{Loop, Table};
 use crate::node::{
     Binary, Const, Dim, FrameInput, LoopId, LoopVar, MaterialField, Node, NodeId, ShapeId,
-    SurfaceVector, Ternary, Type, Unary,
+    SurfaceVector, TableId, Ternary, Type, Unary,
 };
 
 impl Graph {
@@ -158,14 +160,33 @@ impl Graph {
     /// The element of a table of constants at an index, which is rounded down and clamped to the
     /// table.
     pub fn element(&mut self, table: Table, at: NodeId) -> NodeId {
-        if let Some(at) = self.as_number(at) {
-            let last = table.elements.len().saturating_sub(1);
-            let element = table.elements[(at.max(0.0) as usize).min(last)];
-            return self.constant(element.ty(), &element.lanes());
+        match self.constant_element(&table, at) {
+            Some(element) => self.constant(element.ty(), &element.lanes()),
+            None => {
+                let id = self.add_table(table);
+                self.element_of(id, at)
+            }
         }
-        let ty = table.ty;
-        let id = self.intern_table(table);
-        self.intern(Node::Element(id, at, ty))
+    }
+
+    /// Adds a table, for several lookups with [`Self::element_of`].
+    pub fn add_table(&mut self, table: Table) -> TableId {
+        self.intern_table(Arc::new(table))
+    }
+
+    /// As [`Self::element`], of a table that was added.
+    pub fn element_of(&mut self, table: TableId, at: NodeId) -> NodeId {
+        match self.constant_element(self.table(table), at) {
+            Some(element) => self.constant(element.ty(), &element.lanes()),
+            None => self.intern(Node::Element(table, at, self.table(table).ty)),
+        }
+    }
+
+    /// The element at an index that is a constant.
+    fn constant_element(&self, table: &Table, at: NodeId) -> Option<Const> {
+        let at = self.as_number(at)?;
+        let last = table.elements.len().saturating_sub(1);
+        Some(table.elements[(at.max(0.0) as usize).min(last)])
     }
 
     fn widened<const N: usize>(&mut self, arguments: [NodeId; N]) -> [NodeId; N] {

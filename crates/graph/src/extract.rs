@@ -42,7 +42,7 @@ impl Graph {
             graph.intern_loop(self.loop_at(id).map(|node| ids.node(node)));
         }
         for &id in &ids.old_tables {
-            graph.intern_table(self.table(id).clone());
+            graph.intern_table(self.shared_table(id));
         }
         for &id in &nodes {
             graph.adopt(ids.in_node(self.node(id)), self, id);

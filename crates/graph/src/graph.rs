@@ -1,6 +1,7 @@
 //! The arena: interned nodes with their types, stages and ranges, and shape instances.
 
 use std::hash::{BuildHasher, BuildHasherDefault, Hash, Hasher};
+use std::sync::Arc;
 
 use hashbrown::HashTable;
 use rustc_hash::{FxHashMap, FxHasher};
@@ -49,8 +50,9 @@ pub struct Graph {
     claims: FxHashMap<NodeId, LipschitzClaim>,
     loops: Vec<Loop>,
     loop_ids: FxHashMap<Loop, LoopId>,
-    tables: Vec<Table>,
-    table_ids: FxHashMap<Table, TableId>,
+    /// Shared, because a table may be large and graphs are copied.
+    tables: Vec<Arc<Table>>,
+    table_ids: FxHashMap<Arc<Table>, TableId>,
 }
 
 /// The arguments of a node.
@@ -111,6 +113,11 @@ impl Graph {
     /// The table with this id.
     pub fn table(&self, id: TableId) -> &Table {
         &self.tables[id.index()]
+    }
+
+    /// The table with this id, for another graph.
+    pub(crate) fn shared_table(&self, id: TableId) -> Arc<Table> {
+        Arc::clone(&self.tables[id.index()])
     }
 
     /// The loops whose bodies the node lies in, because it depends on their variables: one bit per
@@ -267,9 +274,9 @@ impl Graph {
     }
 
     /// Interns a table.
-    pub(crate) fn intern_table(&mut self, table: Table) -> TableId {
+    pub(crate) fn intern_table(&mut self, table: Arc<Table>) -> TableId {
         let next = TableId(self.tables.len() as u32);
-        let id = *self.table_ids.entry(table.clone()).or_insert(next);
+        let id = *self.table_ids.entry(Arc::clone(&table)).or_insert(next);
         if id == next {
             self.tables.push(table);
         }

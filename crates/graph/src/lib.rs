@@ -98,8 +98,8 @@ pub use polynomial::{Polynomial, similarity_scale_squared};
 pub use program::{CullableLoop, Program, Rays};
 pub use range::Range;
 pub use scene::{
-    Camera, Exposure, Fog, Lens, Light, LightSource, March, Occlusion, Param, ParamKind,
-    Reflections, Scene, Settings, Shadow, Sky, Tone,
+    Camera, Environment, Exposure, Fog, Lens, Light, LightSource, March, Occlusion, Param,
+    ParamKind, Reflections, Scene, Settings, Shadow, Sky, Tone,
 };
 pub use schedule::{live_lanes, schedule};
 pub use shape::{Arg, Contract, FAR, MaterialRule, Shape, SidePromise};

@@ -56,7 +56,8 @@ pub struct CullableLoop {
 /// Flat math of one scene.
 ///
 /// No `Sample` and no `MaterialAt` is reachable from any of the roots. The only point is
-/// `Point(0, Dim::Three)`, except in `rays`, `range`, `slope_range` and `seen_material`. In a
+/// `Point(0, Dim::Three)`, except in `rays`, `range`, `slope_range`, `seen_material` and the
+/// environment of the settings. In a
 /// planar program, whose shapes are regions, it is `Point(0, Dim::Two)`, except in `planar_pixel`.
 #[derive(Clone, Debug, Default)]
 pub struct Program {
@@ -172,9 +173,11 @@ impl Program {
         let material = self.material.into_iter().chain(self.seen_material).flatten();
         let culling_bounds = self.cullable_loops.iter().map(|cullable| cullable.culling_bounds);
         let exposure = self.settings.exposure.and_then(|exposure| exposure.factor);
+        let environment = self.settings.environment;
+        let environment = environment.into_iter().flat_map(|it| [it.radiance, it.irradiance]);
         let singles = [exposure, self.planar_pixel];
         let single = fields.into_iter().chain(rays).chain(singles).flatten();
         let guards = self.guards.iter().map(|guard| guard.bound);
-        single.chain(material).chain(culling_bounds).chain(guards).collect()
+        single.chain(environment).chain(material).chain(culling_bounds).chain(guards).collect()
     }
 }

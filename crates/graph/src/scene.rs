@@ -61,7 +61,8 @@ pub enum ParamKind {
     Choice,
 }
 
-/// Rendering settings. Nodes are of stage `Const` or `Frame`, colours linear.
+/// Rendering settings. Nodes are of stage `Const` or `Frame`, except those of the environment;
+/// colours are linear.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Settings {
     /// The camera; `None`: fitted to the bounds.
@@ -74,6 +75,8 @@ pub struct Settings {
     pub background: Option<NodeId>,
     /// Background colours by direction.
     pub sky: Option<Sky>,
+    /// The light of a picture of the surroundings, in place of `background` and `sky`.
+    pub environment: Option<Environment>,
     /// Fog.
     pub fog: Option<Fog>,
     /// Ambient occlusion.
@@ -96,7 +99,12 @@ impl Settings {
         matches!(self.camera.map(|camera| camera.lens), Some(Lens::Height(_)))
     }
 
-    /// All nodes that the settings use.
+    /// True if nothing lights the scene, so that a light at the camera does.
+    pub fn has_headlight(&self) -> bool {
+        self.lights.is_empty() && self.environment.is_none()
+    }
+
+    /// All nodes of stage `Const` or `Frame` that the settings use.
     pub fn nodes(&self) -> Vec<NodeId> {
         // Destructured so that a new setting does not compile until it is handled here.
         let Self {
@@ -105,6 +113,7 @@ impl Settings {
             ambient,
             background,
             sky,
+            environment: _, // functions of a direction
             fog,
             occlusion,
             reflections,
@@ -220,6 +229,18 @@ pub struct Sky {
     pub horizon: NodeId,
     /// Colour straight down, 3-vector; `None`: that of the horizon.
     pub ground: Option<NodeId>,
+}
+
+/// The light of the surroundings, as functions that shaders call.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Environment {
+    /// The light that a mirror receives, 3-vector. The mirrored direction is
+    /// `Point(0, Dim::Three)`; all components of `Point(1, Dim::Three)` are the mirror's roughness,
+    /// 0 for the picture itself.
+    pub radiance: NodeId,
+    /// The light that a matt white surface reflects, 3-vector. Its normal is
+    /// `Point(0, Dim::Three)`.
+    pub irradiance: NodeId,
 }
 
 /// Fog, which fades distant surfaces.

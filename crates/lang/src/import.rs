@@ -19,7 +19,7 @@ pub trait Resolver {
     /// Returns the reason in one line, such as `no such file`.
     fn read(&self, path: &str) -> Result<String, String>;
 
-    /// Reads a binary file, such as a font. The path is as for [`Resolver::read`].
+    /// Reads a binary file: a font or a picture. The path is as for [`Resolver::read`].
     ///
     /// # Errors
     ///

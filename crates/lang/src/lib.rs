@@ -33,8 +33,10 @@
 //! that this version does not have is the error `E0411`.
 
 pub mod arcs;
+pub mod assets;
 mod check;
 pub mod elab;
+pub mod environment;
 pub mod font;
 pub mod hir;
 pub mod import;
@@ -107,13 +109,13 @@ pub fn front_with(
     if has_errors(&found) {
         return (None, found);
     }
-    let fonts = font::Fonts::new(resolver);
+    let assets = assets::Assets::new(resolver);
     let defaults = CompileValues::new();
     let values = options.values.unwrap_or(&defaults);
     let (elaborated, of_elaboration) = if options.live_literals {
-        live_literals::elaborate(&program, &fonts, sources, file, options.focus, values)
+        live_literals::elaborate(&program, &assets, sources, file, options.focus, values)
     } else {
-        elab::elaborate(&program, &fonts, values)
+        elab::elaborate(&program, &assets, values)
     };
     found.extend(of_elaboration);
     (elaborated, found)
@@ -130,7 +132,7 @@ pub fn declared_params(
     if has_errors(&checked.found) {
         return Vec::new();
     }
-    elab::declared_params(&checked.program, &font::Fonts::new(resolver))
+    elab::declared_params(&checked.program, &assets::Assets::new(resolver))
 }
 
 /// A scene after the check.

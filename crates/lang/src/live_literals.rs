@@ -10,9 +10,9 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use sdfc_diagnostics::{Diagnostic, FileId, Sources, Span};
 
+use crate::assets::Assets;
 pub use crate::elab::LiveLiteral;
 use crate::elab::{self, CompileValues, Elaborated, ParamInputs};
-use crate::font::Fonts;
 use crate::hir::{self, Element, Expr, ExprKind, ParamId, Program};
 
 /// Number of elaborations after which all literals of a scene stay constant.
@@ -33,13 +33,13 @@ struct LiteralFacts {
 /// more than [`MAX_LIVE_LITERALS`], those nearest to the byte offset `focus` become params.
 pub(crate) fn elaborate(
     program: &Program,
-    fonts: &Fonts<'_>,
+    assets: &Assets<'_>,
     sources: &Sources,
     file: FileId,
     focus: Option<u32>,
     values: &CompileValues,
 ) -> (Option<Elaborated>, Vec<Diagnostic>) {
-    let plain = elab::elaborate(program, fonts, values);
+    let plain = elab::elaborate(program, assets, values);
     let Some(found) = &plain.0 else { return plain };
     let mut params = ParamInputs::new(program.params.len(), values);
     let declared = found.scene.params.iter().enumerate();
@@ -53,7 +53,7 @@ pub(crate) fn elaborate(
         if literals.is_empty() {
             return plain;
         }
-        let result = elab::elaborate_with(&lifted, fonts, params.clone());
+        let result = elab::elaborate_with(&lifted, assets, params.clone());
         let (elaborated, uses) = (result.elaborated, result.literals);
         let span = |param: &usize| literals.iter().find(|s| s.param == *param).map(|s| s.span);
         let mut learned = facts.clone();

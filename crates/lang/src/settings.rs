@@ -90,12 +90,28 @@ pub fn table() -> Vec<SettingRow> {
         row(
             (Kind::Sky, "sky", ONCE),
             "A sky behind the scene, also seen in reflections: a gradient from the horizon's colour to the \
-             zenith's, and below to the ground's. It does not light the scene; use `ambient` for that.",
+             zenith's, and below to the ground's. It does not light the scene; use `ambient` for that. \
+             `sky(image: \"studio.hdr\")` is a picture of the surroundings instead, in place of the \
+             gradient. It lights the scene, too: materials mirror it, the rougher the more blurred, and \
+             it is the ambient light unless the scene has `ambient`. Its light casts no shadows.",
             "sky(zenith: #4477bb, horizon: #dde8f0)",
             &[
                 ("zenith", Color, true, "colour straight up; default #4477bb"),
                 ("horizon", Color, true, "colour at the horizon; default #dde8f0"),
                 ("ground", Color, true, "colour straight down; default the horizon's colour"),
+                (
+                    "image",
+                    Text,
+                    true,
+                    "a Radiance picture (.hdr) of all directions, twice as wide as high, beside the scene; its middle is in the direction -z",
+                ),
+                (
+                    "turn",
+                    Angle,
+                    true,
+                    "angle by which the picture is turned about y, towards x from z; default 0deg",
+                ),
+                ("strength", Number, true, "factor of the picture's light; default 1"),
             ],
         ),
         row(

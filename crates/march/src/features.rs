@@ -40,6 +40,8 @@ pub struct Features {
     pub sky: bool,
     /// The sky has another colour below the horizon.
     pub ground: bool,
+    /// A picture of the surroundings is the background and the ambient light.
+    pub environment: bool,
     /// There is fog.
     pub fog: bool,
     /// The fog has a colour of its own.
@@ -84,7 +86,7 @@ impl Features {
     }
 
     /// The overrides of `features.wgsl` and their values.
-    pub fn overrides(self) -> [(&'static str, bool); 31] {
+    pub fn overrides(self) -> [(&'static str, bool); 32] {
         // Destructured so that a new feature does not compile until it is handled here.
         let Self {
             planar: _,
@@ -103,6 +105,7 @@ impl Features {
             occlusion,
             sky,
             ground,
+            environment,
             fog,
             fog_color,
             exposure,
@@ -134,6 +137,7 @@ impl Features {
             ("SKY", sky),
             ("GROUND", ground),
             ("MIRRORS_SKY", sky && materials && !reflections),
+            ("ENVIRONMENT", environment),
             ("FOG", fog),
             ("FOG_COLOR", fog_color),
             ("DEVELOPS", exposure || neutral_tone || film_tone),

@@ -34,6 +34,13 @@ pub const MATERIAL: &str = "material";
 /// `fn seen_material(p: vec3f, normal: vec3f, toward_eye: vec3f) -> Material`. Called in place of
 /// [`MATERIAL`] if [`Features::seen_materials`](crate::Features::seen_materials) is set.
 pub const SEEN_MATERIAL: &str = "seen_material";
+/// `fn radiance(direction: vec3f, roughness: vec3f) -> vec3f`: the light of the surroundings that a
+/// mirror of some roughness receives. Called if
+/// [`Features::environment`](crate::Features::environment) is set.
+pub const RADIANCE: &str = "radiance";
+/// `fn irradiance(normal: vec3f) -> vec3f`: the light of the surroundings that a matt white surface
+/// reflects. Called as [`RADIANCE`].
+pub const IRRADIANCE: &str = "irradiance";
 /// `fn planar_pixel(p: vec2f, size: vec2f) -> vec4f`: the linear colour of a pixel with the middle
 /// p, and the field there. Called in place of all others if
 /// [`Features::planar`](crate::Features::planar) is set.

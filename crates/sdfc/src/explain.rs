@@ -154,6 +154,8 @@ impl Scene {
         let mut roots: Vec<NodeId> = program.distance.into_iter().collect();
         roots.extend(program.material.into_iter().flatten());
         roots.extend(program.settings.nodes());
+        let environment = program.settings.environment;
+        roots.extend(environment.into_iter().flat_map(|it| [it.radiance, it.irradiance]));
         roots
     }
 }
@@ -177,6 +179,7 @@ pub(crate) fn feature_names(features: Features) -> Vec<String> {
         occlusion,
         sky,
         ground: _,
+        environment,
         fog,
         fog_color: _,
         exposure,
@@ -204,6 +207,7 @@ pub(crate) fn feature_names(features: Features) -> Vec<String> {
         ("reflection", reflections),
         ("ambient occlusion", occlusion),
         ("sky", sky),
+        ("environment image", environment),
         ("fog", fog),
         ("exposure", exposure),
         ("tone curve", neutral_tone || film_tone),

@@ -3,7 +3,7 @@
 use std::str::FromStr;
 
 use sdfc_codegen::{
-    FieldOptions, PictureOptions, Shader, Stage, Target, UnknownName, Written, by_name,
+    FieldOptions, Lists, PictureOptions, Shader, Stage, Target, UnknownName, Written, by_name,
     field_module, march_module, picture_module, render_module, shadertoy_module,
 };
 use sdfc_march::Method;
@@ -242,6 +242,15 @@ impl Scene {
         };
         if options.emit == Emit::Field {
             return Ok(field_module(&self.program, &functions)?);
+        }
+        if options.emit == Emit::Render
+            && lists == Lists::Constants
+            && self.program.settings.environment.is_some()
+        {
+            // Compilers would need minutes for so many constants, if they accept them.
+            let what = "storage buffers, which hold the picture of `sky(image: ...)`; choose \
+                        another target, or write a gradient: sky()";
+            return Err(sdfc_codegen::Error::Unsupported { target, what }.into());
         }
         // The choice of a method may trace rays on the CPU. A field does without.
         let program = self.with_bounds_for(&self.program, method);

@@ -1,7 +1,7 @@
 //! The functions of a scene that replace the stubs of a template.
 
 use naga::{Function, ResourceBinding, UniqueArena};
-use sdfc_graph::{NodeId, Program, Rays};
+use sdfc_graph::{Environment, NodeId, Program, Rays};
 use sdfc_march::{Features, MethodDefinition, stubs};
 
 use crate::error::Error;
@@ -33,6 +33,15 @@ impl StubBinding {
     /// A function without arguments, of a per-frame value.
     pub(crate) fn of_frame(stub: &'static str, root: NodeId) -> Self {
         Self { role: None, stub, root, arguments: &[] }
+    }
+
+    /// The light of the surroundings, in a direction by a roughness and by a normal.
+    pub(crate) fn of_environment(environment: Environment) -> [Self; 2] {
+        let Environment { radiance, irradiance } = environment;
+        let (role, arguments) = (None, &["direction", "roughness"]);
+        let radiance = Self { role, stub: stubs::RADIANCE, root: radiance, arguments };
+        let arguments = &["normal"];
+        [radiance, Self { role, stub: stubs::IRRADIANCE, root: irradiance, arguments }]
     }
 
     /// The formula of a pixel: a function of its middle and its size.

@@ -83,6 +83,8 @@ impl<'p> PictureLinker<'p> {
         bindings.extend(segment_bindings(program, method, features)?);
         let exposure = program.settings.exposure.and_then(|exposure| exposure.factor);
         bindings.extend(exposure.map(|root| StubBinding::of_frame(stubs::EXPOSURE, root)));
+        let environment = program.settings.environment;
+        bindings.extend(environment.into_iter().flat_map(StubBinding::of_environment));
         let mut roots: Vec<_> = bindings.iter().map(|binding| binding.root).collect();
         roots.extend(material(program).into_iter().flat_map(|it| it.fields));
         let used = used_slots(program, roots);

@@ -113,7 +113,9 @@ fn link_benchmark(
     // The whole field is marched.
     let culled = field == FieldSource::Distance && is_culled(program, method);
     let instrumented = culled && instrumented;
-    let features = Features { materials: false, culled, instrumented, ..features(program, None) };
+    let environment = false; // its lists would be in the way
+    let features =
+        Features { materials: false, environment, culled, instrumented, ..features(program, None) };
     let used = distance.map_or_else(Vec::new, |distance| used_slots(program, vec![distance]));
     let source = source_with(field, Form::Compute, method, features);
     let mut module = template(&source, features, &used, &[])?;

@@ -77,7 +77,7 @@ fn unused_loads(program: &Program) -> Vec<&'static str> {
         (stubs::LOAD_FRAME, !only_params),
         (stubs::LOAD_TIME, is_used(FrameInput::Time)),
         (stubs::LOAD_COUNT, is_used(FrameInput::Frame)),
-        (stubs::LOAD_HEADLIGHT, program.settings.lights.is_empty()),
+        (stubs::LOAD_HEADLIGHT, program.settings.has_headlight()),
     ];
     calls.into_iter().filter(|call| !call.1).map(|call| call.0).collect()
 }

@@ -53,6 +53,7 @@ pub(super) fn features(program: &Program, method: Option<&MethodDefinition>) -> 
         occlusion: settings.occlusion.is_some(),
         sky: settings.sky.is_some(),
         ground: settings.sky.is_some_and(|sky| sky.ground.is_some()),
+        environment: settings.environment.is_some(),
         fog: settings.fog.is_some(),
         fog_color: settings.fog.is_some_and(|fog| fog.color.is_some()),
         exposure: settings.exposure.is_some_and(|exposure| exposure.factor.is_some()),

@@ -13,6 +13,7 @@ use super::types::{self, describe};
 use super::{Checker, LetIndex, ParamIndex};
 use crate::hir::{Expr, Setting, SettingKind, Type};
 use crate::import;
+use crate::settings::SettingParameter;
 use crate::spelling::{ask, nearest};
 
 /// An item that is evaluated at the top level.
@@ -57,16 +58,26 @@ impl<'a> Checker<'a> {
         if stated.iter().any(|kind| kind.is_light()) {
             return;
         }
+        // A picture of the surroundings takes the place of all light of the look.
+        let has_image = self.program.settings.iter().any(|setting| self.is_image(setting));
         for item in &look.items {
             let Item::Expr(e) = item else { continue };
             let outer = std::mem::replace(&mut self.body, Body::new(module, e.span.start));
             if let Some((row, callee, args)) = self.as_setting(e)
                 && !stated.iter().any(|&kind| replaces(kind, self.settings[row].kind))
+                && !(has_image && self.settings[row].kind.is_light())
             {
                 self.setting(row, callee, args);
             }
             self.leave_top_level(outer);
         }
+    }
+
+    /// True if a setting is a sky with a picture.
+    fn is_image(&self, setting: &Setting) -> bool {
+        let row = self.settings.iter().find(|row| row.kind == setting.kind);
+        let image = row.and_then(|row| row.parameters.iter().position(|it| it.name == "image"));
+        image.is_some_and(|image| matches!(setting.args.get(image), Some(Some(_))))
     }
 
     /// Replaces the camera of the scene by the one of another file, which sees the scene's names.
@@ -354,7 +365,34 @@ impl<'a> Checker<'a> {
                 .help("`fov` is for a perspective view, `height` for a parallel view");
             self.report(found);
         }
+        if row.kind == SettingKind::Sky {
+            self.check_sky(&row.parameters, &args);
+        }
         self.program.settings.push(Setting { kind: row.kind, args, span: callee.span });
+    }
+
+    /// Reports arguments of a gradient beside a picture, and of a picture without one.
+    fn check_sky(&mut self, parameters: &[SettingParameter], args: &[Option<Expr>]) {
+        let given = |name: &str| {
+            let position = parameters.iter().position(|parameter| parameter.name == name)?;
+            Some((parameters[position].name, args.get(position)?.as_ref()?.span))
+        };
+        let of_gradient = ["zenith", "horizon", "ground"].into_iter().find_map(given);
+        let of_image = ["turn", "strength"].into_iter().find_map(given);
+        let (name, span, message, help) = match (given("image"), of_gradient, of_image) {
+            (Some(_), Some((name, span)), _) => {
+                (name, span, "is the colour of a gradient, but this sky is a picture", "remove it")
+            }
+            (None, _, Some((name, span))) => (
+                name,
+                span,
+                "belongs to a picture, but this sky is a gradient",
+                "remove it, or write image: \"studio.hdr\"",
+            ),
+            (Some(_) | None, _, _) => return,
+        };
+        let message = format!("`{name}` {message}");
+        self.report(Diagnostic::error(Code::ARGUMENTS, span, message).help(help));
     }
 
     /// Warns about unused private names and imports.

@@ -11,7 +11,7 @@ use super::literal_uses::LiteralUses;
 use super::output::{Claimed, Site};
 use super::param_inputs::ParamInputs;
 use super::value::{ClosureKey, Value};
-use crate::font::Fonts;
+use crate::assets::Assets;
 use crate::hir;
 
 /// A value is missing because an error was reported. Values that depend on it report nothing.
@@ -87,7 +87,7 @@ pub(super) enum Within {
 /// The state of elaboration.
 pub(super) struct Elaborator<'p> {
     pub(super) program: &'p hir::Program,
-    pub(super) fonts: &'p Fonts<'p>,
+    pub(super) assets: &'p Assets<'p>,
     pub(super) graph: Graph,
     pub(super) params: Vec<sdfc_graph::Param>,
     pub(super) globals: Vec<Option<Value<'p>>>,
@@ -138,12 +138,12 @@ impl<'p> Elaborator<'p> {
     /// The state before elaboration.
     pub(super) fn new(
         program: &'p hir::Program,
-        fonts: &'p Fonts<'p>,
+        assets: &'p Assets<'p>,
         inputs: ParamInputs<'p>,
     ) -> Self {
         Self {
             program,
-            fonts,
+            assets,
             graph: Graph::new(),
             params: Vec::new(),
             globals: vec![None; program.globals.len()],

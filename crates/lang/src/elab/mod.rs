@@ -45,7 +45,7 @@ use std::collections::BTreeSet;
 
 use sdfc_diagnostics::Diagnostic;
 
-use crate::font::Fonts;
+use crate::assets::Assets;
 use crate::hir;
 use elaborator::Elaborator;
 use literal_uses::LiteralUses;
@@ -65,12 +65,12 @@ pub use param_inputs::CompileValues;
 /// default. All other params are per-frame inputs.
 pub fn elaborate(
     program: &hir::Program,
-    fonts: &Fonts<'_>,
+    assets: &Assets<'_>,
     values: &CompileValues,
 ) -> (Option<Elaborated>, Vec<Diagnostic>) {
     let mut params = ParamInputs::new(program.params.len(), values);
     loop {
-        let result = elaborate_with(program, fonts, params.clone());
+        let result = elaborate_with(program, assets, params.clone());
         if result.elaborated.is_some() || !params.fix(&result.structural) {
             return (result.elaborated, result.diagnostics);
         }
@@ -78,10 +78,13 @@ pub fn elaborate(
 }
 
 /// The params of a program.
-pub(crate) fn declared_params(program: &hir::Program, fonts: &Fonts<'_>) -> Vec<sdfc_graph::Param> {
+pub(crate) fn declared_params(
+    program: &hir::Program,
+    assets: &Assets<'_>,
+) -> Vec<sdfc_graph::Param> {
     let values = CompileValues::new();
     let inputs = ParamInputs::new(program.params.len(), &values);
-    let mut elaborator = Elaborator::new(program, fonts, inputs);
+    let mut elaborator = Elaborator::new(program, assets, inputs);
     program.params.iter().for_each(|param| elaborator.param(param));
     elaborator.params
 }
@@ -100,10 +103,10 @@ pub(crate) struct Elaboration {
 /// Elaborates a scene once.
 pub(crate) fn elaborate_with(
     program: &hir::Program,
-    fonts: &Fonts<'_>,
+    assets: &Assets<'_>,
     params: ParamInputs<'_>,
 ) -> Elaboration {
-    let mut elaborator = Elaborator::new(program, fonts, params);
+    let mut elaborator = Elaborator::new(program, assets, params);
     let scene = elaborator.scene();
     elaborator.explain_silence();
     let failed = sdfc_diagnostics::has_errors(&elaborator.diagnostics);

@@ -2,13 +2,14 @@
 
 use sdfc_diagnostics::{Code as ErrorCode, Diagnostic};
 use sdfc_graph::{
-    Camera, Expander, Exposure, Fog, Lens, March, NodeId, Occlusion, Reflections, Settings, Sky,
-    Tone, Type, Unary,
+    Camera, Environment, Expander, Exposure, Fog, Lens, March, NodeId, Occlusion, Reflections,
+    Settings, Sky, Tone, Type, Unary,
 };
 
 use super::elaborator::{Elaborator, Env, Outcome, Poison};
 use super::report::show_number;
 use super::value::Value;
+use crate::environment::functions::functions;
 use crate::hir::{Expr, Setting, SettingKind};
 use crate::settings::{RAY_METHODS, TONES};
 
@@ -19,6 +20,10 @@ const DEFAULT_AMBIENT: f64 = 0.2;
 /// Default linear colours of `sky()`: #4477bb and #dde8f0.
 const DEFAULT_ZENITH: [f64; 3] = [0.0578, 0.1845, 0.4969];
 const DEFAULT_HORIZON: [f64; 3] = [0.7230, 0.8070, 0.8714];
+/// The indices of `image`, `turn` and `strength` among the parameters of `sky`.
+const SKY_IMAGE: usize = 3;
+const SKY_TURN: usize = 4;
+const SKY_STRENGTH: usize = 5;
 /// Default density of `fog()`, per scene unit.
 const DEFAULT_DENSITY: f64 = 0.05;
 /// Default number of reflections of `reflections()`.
@@ -47,6 +52,10 @@ impl<'p> Elaborator<'p> {
                 self.missing = self.missing.or(Some(setting.span));
             }
         }
+        // What a scene states as its ambient light is in place of the picture's.
+        if let (Some(environment), Some(ambient)) = (&mut settings.environment, settings.ambient) {
+            environment.irradiance = ambient;
+        }
         settings
     }
 
@@ -59,7 +68,10 @@ impl<'p> Elaborator<'p> {
             SettingKind::Background => {
                 out.background = Some(self.setting_color(setting, 0)?.ok_or(Poison)?);
             }
-            SettingKind::Sky => out.sky = Some(self.sky(setting)?),
+            SettingKind::Sky => match self.argument(setting, SKY_IMAGE) {
+                Some(image) => out.environment = Some(self.environment(setting, image)?),
+                None => out.sky = Some(self.sky(setting)?),
+            },
             SettingKind::Fog => out.fog = Some(self.fog(setting)?),
             SettingKind::AmbientOcclusion => out.occlusion = Some(self.occlusion(setting)?),
             SettingKind::Reflections => out.reflections = Some(self.reflections(setting)?),
@@ -210,6 +222,25 @@ impl<'p> Elaborator<'p> {
         };
         let [zenith, horizon] = [or(zenith?, DEFAULT_ZENITH), or(horizon?, DEFAULT_HORIZON)];
         Ok(Sky { zenith, horizon, ground: ground? })
+    }
+
+    /// The light of a picture of the surroundings.
+    fn environment(&mut self, setting: &'p Setting, image: &'p Expr) -> Outcome<Environment> {
+        let path = self.text(&mut Env::new(self.program.locals), image, "the picture of a sky")?;
+        let turn = self.setting_number(setting, SKY_TURN);
+        let range = [0.0, POSITIVE[1]];
+        let strength = self.setting_within(setting, SKY_STRENGTH, "`strength`", range);
+        let turn = turn?.unwrap_or_else(|| self.graph.number(0.0));
+        let strength = strength?.unwrap_or_else(|| self.graph.number(1.0));
+        let surroundings = self.assets.pictures.surroundings(&path).map_err(|why| {
+            let help =
+                "name a Radiance picture (.hdr) of all directions in the folder of the scene";
+            let else_ = "where a program cannot read files, as the playground, write a gradient: \
+                         sky(zenith: #4477bb, horizon: #dde8f0)";
+            let error = Diagnostic::error(ErrorCode::IMAGE, image.span, why);
+            self.report(error.help(help).help(else_))
+        })?;
+        Ok(functions(&mut self.graph, &surroundings, turn, strength))
     }
 
     fn fog(&mut self, setting: &'p Setting) -> Outcome<Fog> {

@@ -27,7 +27,7 @@ impl<'p> Elaborator<'p> {
         let align = self.alignment(env, align)?;
         let spacing = self.fixed(env, spacing, "the spacing of a text")?;
         let leading = self.fixed(env, leading, "the leading of a text")?;
-        let pieces = self.fonts.curves(&words, &font, Setting { align, spacing, leading });
+        let pieces = self.assets.fonts.curves(&words, &font, Setting { align, spacing, leading });
         let pieces = pieces.map_err(|why| {
             let help = "use letters that the font has; `font:` is \"sans\" or a font file beside the scene";
             self.report(Diagnostic::error(Code::TEXT, at.span, why).help(help))
@@ -63,7 +63,12 @@ impl<'p> Elaborator<'p> {
         Ok(Value::Text(joined.into()))
     }
 
-    fn text(&mut self, env: &mut Env<'p>, e: &'p Expr, what: &str) -> Outcome<std::rc::Rc<str>> {
+    pub(super) fn text(
+        &mut self,
+        env: &mut Env<'p>,
+        e: &'p Expr,
+        what: &str,
+    ) -> Outcome<std::rc::Rc<str>> {
         match self.eval(env, e)? {
             Value::Text(text) => Ok(text),
             Value::Choice(node, _) => Err(self.not_constant(e.span, what, node)),

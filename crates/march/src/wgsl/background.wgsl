@@ -1,5 +1,16 @@
 // The colour behind the scene.
 
+// Supplied by the scene: the light of the surroundings that a mirror receives. All components of
+// `roughness` are the mirror's roughness, 0 for the surroundings themselves.
+fn radiance(direction: vec3f, roughness: vec3f) -> vec3f {
+    return vec3f();
+}
+
+// Supplied by the scene: the light of the surroundings that a matt white surface reflects.
+fn irradiance(normal: vec3f) -> vec3f {
+    return vec3f();
+}
+
 fn background_color(direction: vec3f) -> vec3f {
     var color = view.background;
     if SKY {
@@ -13,6 +24,9 @@ fn background_color(direction: vec3f) -> vec3f {
                 color = mix(view.background, view.horizon, high * high * high);
             }
         }
+    }
+    if ENVIRONMENT {
+        color = radiance(direction, vec3f());
     }
     return color;
 }

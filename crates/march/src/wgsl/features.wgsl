@@ -32,6 +32,8 @@ override SKY: bool;
 override GROUND: bool;
 // Materials mirror the sky without reflected rays.
 override MIRRORS_SKY: bool;
+// A picture of the surroundings is the background and the ambient light.
+override ENVIRONMENT: bool;
 // There is fog; the fog has a colour of its own.
 override FOG: bool;
 override FOG_COLOR: bool;

@@ -16,6 +16,8 @@ struct SurfaceHit {
 
 // Roughness of the mirror before the current hit, which spreads the highlights that it shows.
 var<private> blur: f32;
+// True if no reflected ray follows the current one: the surface mirrors the surroundings alone.
+var<private> is_last: bool;
 
 fn shade_hit(view_ray: Ray, found: Trace) -> SurfaceHit {
     var hit: SurfaceHit;
@@ -31,7 +33,11 @@ fn shade_hit(view_ray: Ray, found: Trace) -> SurfaceHit {
             open = unoccluded_fraction(hit.surface.point, hit.surface.normal);
             hit.evaluations += OCCLUSION_SAMPLES;
         }
-        hit.color = ambient_light(hit.surface, open * view.ambient);
+        if ENVIRONMENT {
+            hit.color = environment_light(hit.surface, open);
+        } else {
+            hit.color = ambient_light(hit.surface, open * view.ambient);
+        }
         if MIRRORS_SKY {
             hit.color += open * mirrored_sky(hit.surface);
         }
@@ -41,6 +47,11 @@ fn shade_hit(view_ray: Ray, found: Trace) -> SurfaceHit {
         }
     } else {
         hit.color = background_color(view_ray.direction);
+        if ENVIRONMENT {
+            if REFLECTIONS {
+                hit.color = radiance(view_ray.direction, vec3f(blur));
+            }
+        }
     }
     return hit;
 }
@@ -69,6 +80,9 @@ fn picture(pixel: vec2u) -> Pixel {
     var reflections = 0u;
     if REFLECTIONS {
         blur = 0.0;
+        if ENVIRONMENT {
+            is_last = min(view.reflections, MAX_REFLECTIONS) == 0u;
+        }
     }
     // The number of lights handled for the current surface. The ray leads to the last of them, or
     // is the view ray.
@@ -145,6 +159,9 @@ fn picture(pixel: vec2u) -> Pixel {
                     reflections++;
                     lights_done = 0u;
                     blur = roughness_of(hit.surface);
+                    if ENVIRONMENT {
+                        is_last = reflections >= min(view.reflections, MAX_REFLECTIONS);
+                    }
                     view_ray = reflected_ray(hit.surface, view_ray, hit.trace.t);
                     ray = view_ray;
                     continue;

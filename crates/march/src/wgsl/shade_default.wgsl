@@ -40,6 +40,12 @@ fn ambient_light(surface: Surface, ambient: vec3f) -> vec3f {
     return ambient * DEFAULT_COLOR;
 }
 
+// The light of the surroundings that the surface reflects. If surfaces mirror each other, reflected
+// rays add what a polished surface mirrors.
+fn environment_light(surface: Surface, open: f32) -> vec3f {
+    return open * irradiance(surface.normal) * DEFAULT_COLOR;
+}
+
 // The light that the surface reflects from a light source: its colour times the cosine of the angle
 // of incidence.
 fn reflected_light(surface: Surface, light: IncomingLight) -> vec3f {

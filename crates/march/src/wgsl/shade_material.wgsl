@@ -153,6 +153,21 @@ fn ambient_light(surface: Surface, ambient: vec3f) -> vec3f {
     return ambient * paint.occlusion * (mirrored + (1.0 - lost) * diffuse_color(paint)) + paint.emission;
 }
 
+// The light that the surface emits, and the light of the surroundings that it reflects. A reflected
+// ray brings `mirrored_fraction`, so only the rest of the mirrored light is added before it.
+fn environment_light(surface: Surface, open: f32) -> vec3f {
+    let paint = surface.material;
+    var mirrored = ambient_specular(specular_color(paint), paint.roughness, surface.facing);
+    let lost = ambient_specular(vec3f(DIELECTRIC), paint.roughness, surface.facing);
+    if REFLECTIONS {
+        mirrored *= select(paint.roughness, 1.0, is_last);
+    }
+    let direction = reflect(-surface.toward_eye, surface.normal);
+    let specular = mirrored * radiance(direction, vec3f(paint.roughness));
+    let diffuse = (1.0 - lost) * diffuse_color(paint) * irradiance(surface.normal);
+    return open * ambient_fraction(paint) * (specular + diffuse) + paint.emission;
+}
+
 // The light that the surface reflects from a light source: a highlight and, through the interface
 // twice, Lambert's law.
 fn reflected_light(surface: Surface, light: IncomingLight) -> vec3f {

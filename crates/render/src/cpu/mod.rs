@@ -6,6 +6,7 @@
 //! again for all reflections. A planar picture has no rays: its pixels are one formula.
 
 mod cells;
+mod environment;
 mod gradients;
 pub(crate) mod method;
 mod pixels;
@@ -36,6 +37,7 @@ use crate::image::Image;
 use crate::tiles::{Tile, Tiler};
 use crate::view::View;
 use cells::{CachedField, Cells};
+use environment::EnvironmentTapes;
 use gradients::Gradient;
 use method::CpuMethod;
 use pixels::Pixels;
@@ -66,6 +68,7 @@ pub struct CpuScene {
     gradient: Option<Tape>,
     /// The material of a surface that is seen, see `Program::seen_material`.
     material: Option<Tape>,
+    environment: Option<EnvironmentTapes>,
     /// True if a small value of the field may be far from the surface.
     is_loose: bool,
     /// The pixel of a planar picture, which replaces all others.
@@ -96,6 +99,7 @@ impl CpuScene {
             range: range.transpose().map_err(refused)?,
             gradient: program.gradient.map(|gradient| tape(&[gradient])).transpose()?,
             material: material.transpose().map_err(refused)?,
+            environment: EnvironmentTapes::new(program).map_err(refused)?,
             is_loose: program.is_loose,
             planar_pixel: planar_pixel.transpose().map_err(refused)?.map(Arc::new),
         })
@@ -249,6 +253,7 @@ impl CpuScene {
             range: self.range.as_ref().map(|tape| tape.prepare(frame)),
             gradient: None,
             material: None,
+            environment: None,
         }
     }
 
@@ -261,6 +266,7 @@ impl CpuScene {
                 .as_ref()
                 .map(|tape| Gradient { whole: prepare(tape), operations: tape.operations() }),
             material: self.material.as_ref().map(prepare),
+            environment: self.environment.as_ref().map(|tapes| tapes.prepare(frame)),
             ..wave
         }
     }

@@ -84,6 +84,28 @@ impl Surface {
         }
     }
 
+    /// The light that the surface emits, and the light of the surroundings that it reflects: that
+    /// of a matt white surface, and that which a mirror of its roughness receives. A reflected ray,
+    /// if one follows, brings [`Self::mirrored_fraction`], so only the rest is added here. `open`
+    /// is the unoccluded fraction.
+    pub(super) fn reflected_environment(
+        &self,
+        irradiance: DVec3,
+        radiance: DVec3,
+        ray_follows: bool,
+        open: f64,
+    ) -> DVec3 {
+        match self.paint {
+            Some(paint) => {
+                let share = if ray_follows { paint.roughness } else { 1.0 };
+                let mirrored = paint.specular(self.facing()) * radiance * share;
+                let scattered = paint.scattered(self.facing()) * irradiance;
+                (mirrored + scattered) * open * paint.occlusion.max(0.0) + paint.emission
+            }
+            None => irradiance * open * DEFAULT_COLOR,
+        }
+    }
+
     /// The fraction of the light from the mirrored direction that the surface reflects as a mirror.
     pub(super) fn mirrored_fraction(&self) -> DVec3 {
         match self.paint {
@@ -162,11 +184,16 @@ impl Paint {
         self.mixed(|color, _| color.map(|straight_on| (straight_on * scale + bias).max(0.0)))
     }
 
+    /// The fraction of uniform light that the layer below scatters towards the eye.
+    fn scattered(&self, facing: f64) -> DVec3 {
+        let [scale, bias] = karis(self.roughness, facing);
+        let lost = (DIELECTRIC * scale + bias).max(0.0);
+        self.mixed(|_, matt| matt * (1.0 - lost))
+    }
+
     /// The fraction of uniform ambient light that leaves towards the eye.
     fn albedo_everywhere(&self, facing: f64) -> DVec3 {
-        let [scale, bias] = karis(self.roughness, facing);
-        let mirrored = |straight_on: f64| (straight_on * scale + bias).max(0.0);
-        self.mixed(|color, matt| color.map(mirrored) + matt * (1.0 - mirrored(DIELECTRIC)))
+        self.specular(facing) + self.scattered(facing)
     }
 }
 

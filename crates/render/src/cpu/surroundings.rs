@@ -53,10 +53,12 @@ pub(super) fn light_visibility(light: &ViewLight, clearance: f64) -> f64 {
     }
 }
 
-/// The background in a direction.
+/// The background in a direction; black if it is an environment, which [`super::environment`]
+/// evaluates.
 pub(super) fn background_color(view: &View, direction: DVec3) -> DVec3 {
     match view.background {
         Background::Plain(color) => color,
+        Background::Environment => DVec3::ZERO,
         Background::Sky { zenith, horizon, ground } => {
             let far = if direction.y < 0.0 { ground } else { zenith };
             far + (horizon - far) * (1.0 - direction.y.abs().min(1.0)).powi(3)
@@ -64,14 +66,9 @@ pub(super) fn background_color(view: &View, direction: DVec3) -> DVec3 {
     }
 }
 
-/// The fraction of a surface's light that is left after the fog, and the colour of the fog.
-pub(super) fn through_fog(view: &View, direction: DVec3, t: f64) -> (f64, DVec3) {
-    match view.fog {
-        None => (1.0, DVec3::ZERO),
-        Some(ViewFog { density, color }) => {
-            ((-density * t).exp(), color.unwrap_or_else(|| background_color(view, direction)))
-        }
-    }
+/// The fraction of a surface's light that is left after the fog.
+pub(super) fn clear_fraction(view: &View, t: f64) -> f64 {
+    view.fog.map_or(1.0, |ViewFog { density, color: _ }| (-density * t).exp())
 }
 
 /// The smoothstep function: from 0 to 1, flat at both ends.

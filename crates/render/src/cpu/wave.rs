@@ -4,17 +4,18 @@ use glam::DVec3;
 use sdfc_march::{PixelBlock, UNPROVEN};
 
 use super::cells::Cells;
+use super::environment::EnvironmentBatch;
 use super::gradients::Gradient;
 use super::pixels::Pixels;
 use super::pre_intersection::PreIntersectionBatch;
 use super::ray::{Batch, Ray, Real, surface_values};
 use super::shade::{Paint, Surface};
-use super::surroundings::{IncomingLight, background_color, light_visibility, through_fog};
+use super::surroundings::{IncomingLight, background_color, clear_fraction, light_visibility};
 use super::trace::copies::trace_among_copies;
 use super::trace::{Limits, Trace, trace};
 use crate::image::HIT;
 use crate::view::footprint::Footprint;
-use crate::view::{Background, View, ViewLight, ViewOcclusion, ViewShadow};
+use crate::view::{Background, View, ViewFog, ViewLight, ViewOcclusion, ViewShadow};
 
 /// The number of samples above a surface for ambient occlusion.
 const OCCLUSION_SAMPLES: u32 = 5;
@@ -35,6 +36,8 @@ pub(super) struct Wave<'a, T> {
     /// `None` if only depths are drawn.
     pub(super) gradient: Option<Gradient<'a, T>>,
     pub(super) material: Option<Batch<'a, T>>,
+    /// The light of a picture of the surroundings.
+    pub(super) environment: Option<EnvironmentBatch<'a, T>>,
 }
 
 /// A pixel while it is drawn.
@@ -89,15 +92,17 @@ impl<T: Real> Pixels for Wave<'_, T> {
         let mut shades = vec![Shade::default(); positions.len()];
         let camera_ray =
             |pixel: usize| ViewRay { pixel, ray: rays[pixel], weight: DVec3::ONE, blur: 0.0 };
-        let mut hits = self.lit_hits(camera_ray, &primary, &mut shades);
-        for _ in 0..self.view.reflections {
+        let mut left = self.view.reflections;
+        let mut hits = self.lit_hits(camera_ray, &primary, left, &mut shades);
+        while left > 0 {
+            left -= 1;
             // A surface that mirrors nothing needs no reflected ray.
             let mirrors = |ray: &ViewRay<T>| ray.weight.cmpgt(DVec3::ZERO).any();
             let view_rays: Vec<ViewRay<T>> =
                 hits.iter().map(|hit| self.reflected(hit)).filter(mirrors).collect();
             let rays: Vec<Ray<T>> = view_rays.iter().map(|view_ray| view_ray.ray).collect();
             let traces = self.traces(&rays, false);
-            hits = self.lit_hits(|index| view_rays[index], &traces, &mut shades);
+            hits = self.lit_hits(|index| view_rays[index], &traces, left, &mut shades);
         }
         let pixels = primary.iter().zip(shades);
         pixels.map(|(trace, shade)| self.block(trace, shade)).collect()
@@ -129,14 +134,16 @@ impl<'a, T: Real> Wave<'a, T> {
     }
 
     /// Adds what view rays see, given by their index: the background where they hit nothing, and
-    /// the lights where they hit a surface. Adds what the rays cost, too.
+    /// the lights where they hit a surface. Adds what the rays cost, too. `left` is the number of
+    /// reflections that can still follow.
     fn lit_hits(
         &mut self,
         view_ray: impl Fn(usize) -> ViewRay<T>,
         traces: &[Trace<'_, T>],
+        left: u32,
         shades: &mut [Shade],
     ) -> Vec<SurfaceHit<T>> {
-        let mut seen = Vec::new();
+        let (mut seen, mut missed) = (Vec::new(), Vec::new());
         for (index, trace) in traces.iter().enumerate() {
             let view_ray = view_ray(index);
             let shade = &mut shades[view_ray.pixel];
@@ -144,19 +151,21 @@ impl<'a, T: Real> Wave<'a, T> {
             if trace.status == HIT {
                 seen.push((view_ray, *trace));
             } else {
-                let background = background_color(self.view, vector(view_ray.ray.direction));
-                shade.color += background * view_ray.weight;
+                missed.push(view_ray);
             }
+        }
+        let behind: Vec<(DVec3, f64)> =
+            missed.iter().map(|ray| (vector(ray.ray.direction), ray.blur)).collect();
+        for (view_ray, background) in missed.iter().zip(self.backgrounds(&behind)) {
+            shades[view_ray.pixel].color += background * view_ray.weight;
         }
         let mut hits = self.hits(&seen);
         let open = self.unoccluded_fractions(&hits, shades);
-        for (SurfaceHit { view_ray, t, surface, .. }, open) in hits.iter_mut().zip(open) {
-            let (clear, haze) = through_fog(self.view, -surface.toward_eye, (*t).into());
-            let mut reflected = surface.ambient(self.view.ambient * open);
-            if self.mirrors_sky() {
-                let sky = background_color(self.view, surface.mirrored_direction());
-                reflected += surface.mirrored_sky(sky, self.view.ambient) * open;
-            }
+        let ambient = self.ambient(&hits, &open, left > 0);
+        let haze = self.haze(&hits);
+        let lit = ambient.into_iter().zip(haze);
+        for (SurfaceHit { view_ray, t, .. }, (reflected, haze)) in hits.iter_mut().zip(lit) {
+            let clear = clear_fraction(self.view, (*t).into());
             shades[view_ray.pixel].color +=
                 (reflected * clear + haze * (1.0 - clear)) * view_ray.weight;
             view_ray.weight *= clear;
@@ -165,6 +174,56 @@ impl<'a, T: Real> Wave<'a, T> {
             self.light(light, &hits, shades);
         }
         hits
+    }
+
+    /// The background in directions, as mirrors of some roughness show it.
+    fn backgrounds(&mut self, seen: &[(DVec3, f64)]) -> Vec<DVec3> {
+        match &mut self.environment {
+            Some(environment) => environment.radiance(seen),
+            None => seen.iter().map(|&(to, _)| background_color(self.view, to)).collect(),
+        }
+    }
+
+    /// The colour of the fog before each hit.
+    fn haze(&mut self, hits: &[SurfaceHit<T>]) -> Vec<DVec3> {
+        match self.view.fog {
+            None => vec![DVec3::ZERO; hits.len()],
+            Some(ViewFog { color: Some(color), .. }) => vec![color; hits.len()],
+            Some(ViewFog { color: None, .. }) => {
+                let behind = hits.iter().map(|hit| (-hit.surface.toward_eye, 0.0));
+                self.backgrounds(&behind.collect::<Vec<_>>())
+            }
+        }
+    }
+
+    /// The light that each hit emits, and that it reflects of the ambient light or of the
+    /// surroundings.
+    fn ambient(&mut self, hits: &[SurfaceHit<T>], open: &[f64], ray_follows: bool) -> Vec<DVec3> {
+        if let Some(environment) = &mut self.environment {
+            let normals: Vec<DVec3> = hits.iter().map(|hit| hit.surface.normal).collect();
+            let irradiance = environment.irradiance(&normals);
+            let mirrors = hits
+                .iter()
+                .map(|hit| (hit.surface.mirrored_direction(), hit.surface.roughness()))
+                .collect::<Vec<_>>();
+            let light = irradiance.into_iter().zip(environment.radiance(&mirrors));
+            let reflected = hits.iter().zip(open).zip(light);
+            return reflected
+                .map(|((hit, &open), (irradiance, radiance))| {
+                    hit.surface.reflected_environment(irradiance, radiance, ray_follows, open)
+                })
+                .collect();
+        }
+        let reflected = |(hit, &open): (&SurfaceHit<T>, &f64)| {
+            let surface = &hit.surface;
+            let ambient = surface.ambient(self.view.ambient * open);
+            if !self.mirrors_sky() {
+                return ambient;
+            }
+            let sky = background_color(self.view, surface.mirrored_direction());
+            ambient + surface.mirrored_sky(sky, self.view.ambient) * open
+        };
+        hits.iter().zip(open).map(reflected).collect()
     }
 
     /// True if materials mirror the sky without reflected rays.

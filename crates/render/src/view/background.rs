@@ -23,6 +23,8 @@ pub enum Background {
         /// Straight down.
         ground: DVec3,
     },
+    /// The environment of the program's settings, a function of the direction.
+    Environment,
 }
 
 /// Fog.
@@ -47,6 +49,9 @@ pub(super) fn background(
     settings: &Settings,
     value: &dyn Fn(NodeId) -> [f64; 4],
 ) -> Result<Background, ViewError> {
+    if settings.environment.is_some() {
+        return Ok(Background::Environment);
+    }
     if let Some(Sky { zenith, horizon, ground }) = settings.sky {
         let [zenith, horizon, ground] = [zenith, horizon, ground.unwrap_or(horizon)]
             .map(|node| finite(value(node), "the sky's colour"));

@@ -1,7 +1,7 @@
 //! The lights of a frame as numbers.
 
 use glam::DVec3;
-use sdfc_graph::{Light, LightSource, NodeId, Shadow};
+use sdfc_graph::{Light, LightSource, NodeId, Settings, Shadow};
 use sdfc_march::{LightBlock, MAX_LIGHTS, POINT, SHADOW_HARD, SHADOW_OFF, SHADOW_SOFT, SPOT, SUN};
 
 use super::error::ViewError;
@@ -81,16 +81,17 @@ impl ViewLight {
     }
 }
 
-/// The scene's lights, or a white one at the camera if it has none.
+/// The scene's lights, or a white one at the camera if nothing lights it.
 pub(super) fn lights(
-    lights: &[Light],
+    settings: &Settings,
     forward: DVec3,
     value: &dyn Fn(NodeId) -> [f64; 4],
 ) -> Result<Vec<ViewLight>, ViewError> {
+    let lights = &settings.lights;
     if lights.len() > MAX_LIGHTS {
         return Err(ViewError::TooManyLights(lights.len()));
     }
-    if lights.is_empty() {
+    if settings.has_headlight() {
         let (source, shadow) = (ViewSource::Sun(-forward), ViewShadow::Off);
         return Ok(vec![ViewLight { source, color: DVec3::ONE, shadow }]);
     }

@@ -169,7 +169,7 @@ impl View {
             epsilon: limits.epsilon,
             tolerance: limits.tolerance,
             steps: limits.steps,
-            lights: lights(&settings.lights, forward, value)?,
+            lights: lights(settings, forward, value)?,
             ambient: ambient.transpose()?.unwrap_or_default(),
             background: background(settings, value)?,
             fog: settings.fog.map(|fog| view_fog(fog, value)).transpose()?,
@@ -253,6 +253,7 @@ impl View {
         let Footprint { radius, spread } = self.footprint();
         let [background, zenith, horizon] = match self.background {
             Background::Plain(color) => [color, DVec3::ZERO, DVec3::ZERO],
+            Background::Environment => [DVec3::ZERO; 3],
             Background::Sky { zenith, horizon, ground } => [ground, zenith, horizon],
         };
         let fog = self.fog.unwrap_or(ViewFog { density: 0.0, color: None });
