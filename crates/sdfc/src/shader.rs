@@ -248,7 +248,7 @@ impl Scene {
             && self.program.settings.environment.is_some()
         {
             // Compilers would need minutes for so many constants, if they accept them.
-            let what = "storage buffers, which hold the picture of `sky(image: ...)`; choose \
+            let what = "storage buffers, which the picture of `sky(image: ...)` needs; choose \
                         another target, or write a gradient: sky()";
             return Err(sdfc_codegen::Error::Unsupported { target, what }.into());
         }

@@ -15,8 +15,8 @@ pub const LEVELS: usize = 6;
 /// The largest sides of the maps. The lobes are 1.5, 4, 9, 24, 60 and 180 degrees wide, and a
 /// quarter of a turn is half as many texels as a side.
 const SIDES: [usize; LEVELS] = [513, 129, 65, 33, 17, 17];
-/// The number of directions of a lobe.
-const DIRECTIONS: u32 = 64;
+/// The numbers of directions of the lobes. Wide lobes have few texels, and see much at once.
+const DIRECTIONS: [u32; LEVELS] = [1, 64, 64, 256, 256, 256];
 /// The number of halved maps that lobes read.
 const HALVED: usize = 7;
 
@@ -35,7 +35,7 @@ pub fn levels(sharp: Octahedron) -> Vec<Octahedron> {
     while let Some(last) = coarser.last().filter(|last| last.side > 3 && coarser.len() < HALVED) {
         coarser.push(last.halved());
     }
-    let blurred = (1..LEVELS).map(|level| blurred(&coarser, roughness(level), SIDES[level]));
+    let blurred = (1..LEVELS).map(|level| blurred(&coarser, level));
     let blurred: Vec<Octahedron> = blurred.collect();
     coarser.truncate(1);
     coarser.extend(blurred);
@@ -56,12 +56,12 @@ struct LobeDirection {
     map: usize,
 }
 
-/// What a mirror of a roughness receives.
-fn blurred(maps: &[Octahedron], roughness: f32, side: usize) -> Octahedron {
+/// What mirrors of a level receive.
+fn blurred(maps: &[Octahedron], level: usize) -> Octahedron {
     let sharp = maps[0].side;
-    let lobe = lobe(roughness, sharp, maps.len());
+    let lobe = lobe(level, sharp, maps.len());
     let total: f32 = lobe.iter().map(|it| it.weight).sum();
-    Octahedron::of(side.min(sharp), |normal| {
+    Octahedron::of(SIDES[level].min(sharp), |normal| {
         let [right, up] = tangents(normal);
         let mut sum = [0.0; 3];
         for LobeDirection { direction: [x, y, z], weight, map } in &lobe {
@@ -77,13 +77,14 @@ fn blurred(maps: &[Octahedron], roughness: f32, side: usize) -> Octahedron {
 
 /// The directions of a lobe. Facets are chosen with their density D; a mirrored direction has the
 /// density D / 4 then, and counts by its cosine.
-fn lobe(roughness: f32, side: usize, maps: usize) -> Vec<LobeDirection> {
-    let alpha = roughness * roughness;
-    let square = alpha * alpha;
+fn lobe(level: usize, side: usize, maps: usize) -> Vec<LobeDirection> {
+    // GGX takes the roughness squared for alpha.
+    let square = roughness(level).powi(4);
+    let count = DIRECTIONS[level];
     // Mean solid angle of a texel of the sharp map.
     let texel = 4.0 * PI / ((side - 1) * (side - 1)) as f32;
     let direction = |index: u32| {
-        let [u, v] = [(index as f32 + 0.5) / DIRECTIONS as f32, radical_inverse(index)];
+        let [u, v] = [(index as f32 + 0.5) / count as f32, radical_inverse(index)];
         let cosine_squared = (1.0 - u) / (1.0 + (square - 1.0) * u);
         // Twice the facet's angle, by the formulas for a double angle.
         let cosine = 2.0 * cosine_squared - 1.0;
@@ -91,12 +92,12 @@ fn lobe(roughness: f32, side: usize, maps: usize) -> Vec<LobeDirection> {
         let (y, x) = (2.0 * PI * v).sin_cos();
         let slope = (square - 1.0) * cosine_squared + 1.0;
         let density = square / (PI * slope * slope) / 4.0;
-        let solid_angle = 1.0 / (DIRECTIONS as f32 * density);
-        let map = (0.5 * (solid_angle / texel).log2()).round().max(0.0) as usize;
+        let solid_angle = 1.0 / (count as f32 * density);
+        let map = (0.5 * (solid_angle / texel).log2()).ceil().max(0.0) as usize;
         let direction = [sine * x, sine * y, cosine];
         LobeDirection { direction, weight: cosine, map: map.min(maps - 1) }
     };
-    (0..DIRECTIONS).map(direction).filter(|it| it.weight > 0.0).collect()
+    (0..count).map(direction).filter(|it| it.weight > 0.0).collect()
 }
 
 /// The bits of a number behind the binary point in reverse order (van der Corput), which fills the
