@@ -8,8 +8,8 @@ use std::sync::LazyLock;
 /// longer than everything else that is done with them. The results are those of the formula.
 pub fn linear_to_srgb8(linear: f32) -> u8 {
     let table = &*TABLE;
-    // `max` makes 0 of NaN.
-    let linear = linear.max(0.0).min(1.0);
+    // NaN is not above 0.
+    let linear = if linear > 0.0 { linear.min(1.0) } else { 0.0 };
     let code = table.codes[interval(linear)];
     // The next code begins in the same interval or in a later one.
     code + u8::from(linear >= table.begins[usize::from(code) + 1])
