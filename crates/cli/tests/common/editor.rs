@@ -25,7 +25,7 @@ pub struct Editor {
 }
 
 impl Editor {
-    /// Starts the server for a folder, which has shared modules in `.modules`. Hovers have pictures.
+    /// Starts the server for a folder. Its shared modules are in `.modules`. Hovers have pictures.
     pub fn start(folder: &Path, encodings: Value) -> Self {
         let mut child = Command::new(env!("CARGO_BIN_EXE_sdfc"))
             .args(["lsp", "--stdio"])
