@@ -149,7 +149,11 @@ fn literal(expr: &ast::Expr) -> Option<f64> {
 }
 
 fn setting(row: &settings::SettingRow) -> Result<Setting, String> {
-    let parameters = row.parameters.iter().map(|parameter| {
+    let known = row
+        .parameters
+        .iter()
+        .filter(|parameter| !kernel::OF_PICTURES.contains(&[row.name, parameter.name]));
+    let parameters = known.map(|parameter| {
         let key = (row.name, parameter.name);
         let range =
             kernel::SETTING_RANGES.iter().find(|(setting, name, _)| (*setting, *name) == key);

@@ -114,6 +114,9 @@ pub const SETTING_RANGES: &[(&str, &str, [f64; 2])] = &[
     ("sun", "strength", [0.0, 3.0]),
 ];
 
+/// Parameters of settings that need a picture beside the scene. Programs have no files.
+pub const OF_PICTURES: [[&str; 2]; 3] = [["sky", "image"], ["sky", "turn"], ["sky", "strength"]];
+
 /// Pairs of settings of which a scene can have one.
 pub const RIVAL_SETTINGS: [[&str; 2]; 1] = [["sky", "background"]];
 
