@@ -7,7 +7,7 @@
 
 use super::octahedron::{Octahedron, Vector};
 
-/// Linear colours, one for each function of [`basis`].
+/// Linear colours, one for each function of the basis.
 pub type Coefficients = [[f64; 3]; 9];
 
 /// The spherical harmonics up to degree 2 at a direction, without their constant factors.

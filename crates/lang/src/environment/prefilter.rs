@@ -20,7 +20,7 @@ const DIRECTIONS: [u32; LEVELS] = [1, 64, 64, 256, 256, 256];
 /// The number of halved maps that lobes read.
 const HALVED: usize = 7;
 
-/// The roughness of a level: [`SMOOTHEST`], then 10^(1/5) times as much for each, up to 1. So each
+/// The roughness of a level: 0.1, then 10^(1/5) times as much for each, up to 1. So each
 /// lobe is 2.5 times as wide as the one before.
 pub fn roughness(level: usize) -> f32 {
     10f32.powf(level as f32 / (LEVELS - 1) as f32 - 1.0)
