@@ -17,9 +17,8 @@ use crate::cost::cost;
 const LEAST_OPERATIONS: usize = 200;
 /// Largest number of guards. Each is a branch.
 const MAX_GUARDS: usize = 16;
-/// The fraction of its size by which a box is enlarged that limits a field from below: so much that
-/// the box is never nearer to the limit of precision than the surface in it, where it would decide
-/// the normal.
+/// The fraction by which a box is enlarged that limits a field. At the surface, the distance to the
+/// box must be clearly below 0: where it is the greater one, it decides the normal.
 const LIMIT_MARGIN: f64 = 0.02;
 
 /// Limits costly operands whose field is only a lower bound of the distance: the value becomes the

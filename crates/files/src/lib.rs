@@ -99,11 +99,6 @@ impl Folder {
         Self { own, modules: modules.collect() }
     }
 
-    /// The same with other folders of shared modules.
-    pub fn with_modules(self, modules: Vec<PathBuf>) -> Self {
-        Self { modules, ..self }
-    }
-
     /// Returns the path of the scene's folder.
     pub fn path(&self) -> &Path {
         &self.own
@@ -199,7 +194,7 @@ mod tests {
                 std::fs::write(folder.join(file), name.as_bytes()).unwrap();
             }
         }
-        let folder = Folder::new(own.clone()).with_modules(vec![first, second.clone()]);
+        let folder = Folder { own: own.clone(), modules: vec![first, second.clone()] };
         for (file, place) in [("a.sdf", "scene"), ("b.sdf", "first"), ("c.sdf", "second")] {
             assert_eq!(folder.read(file).as_deref(), Ok(place), "{file}");
         }

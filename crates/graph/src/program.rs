@@ -57,8 +57,8 @@ pub struct CullableLoop {
 ///
 /// No `Sample` and no `MaterialAt` is reachable from any of the roots. The only point is
 /// `Point(0, Dim::Three)`, except in `rays`, `range`, `slope_range`, `seen_material` and the
-/// environment of the settings. In a
-/// planar program, whose shapes are regions, it is `Point(0, Dim::Two)`, except in `planar_pixel`.
+/// environment of the settings. In a planar program, whose shapes are regions, it is
+/// `Point(0, Dim::Two)`, except in `planar_pixel`.
 #[derive(Clone, Debug, Default)]
 pub struct Program {
     /// The arena.

@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 use std::str::FromStr;
-use std::sync::{Mutex, OnceLock};
+use std::sync::OnceLock;
 use std::time::Instant;
 
 use sdfc_analyze::prepare_with;
@@ -307,7 +307,6 @@ impl Scene {
             program,
             engine,
             reopened: OnceLock::new(),
-            old: Mutex::default(),
             method,
             why,
             size,
@@ -385,8 +384,6 @@ pub struct Painter<'s> {
     engine: Engine,
     /// The engine after the device was lost.
     reopened: OnceLock<Engine>,
-    /// A picture that is no longer needed, whose memory the next one takes.
-    old: Mutex<Option<Image>>,
     method: Method,
     /// Why this method draws, if the field is uncertified.
     why: Option<String>,
@@ -525,20 +522,20 @@ impl Painter<'_> {
         progress: &mut OnProgress<'_>,
     ) -> Result<Frame, RenderError> {
         let count = self.samples.len() as u64;
-        let mut mean: Option<Frame> = None;
+        let (mut mean, mut old): (Option<Frame>, Option<Image>) = (None, None);
         for (place, before) in self.samples.iter().zip(0..) {
             let mut part = |part: Progress| {
                 let done = part.total * before + part.done;
                 progress(Progress { done, total: part.total * count })
             };
-            let frame = self.one(&view.shifted(*place), values, &mut part)?;
+            let frame = self.one(old.take(), &view.shifted(*place), values, &mut part)?;
             match &mut mean {
                 None => mean = Some(frame),
                 Some(mean) => {
                     mean.image.add(&frame.image);
                     mean.milliseconds += frame.milliseconds;
                     mean.tiles += frame.tiles;
-                    self.keep_memory(frame.image);
+                    old = Some(frame.image);
                 }
             }
         }
@@ -547,31 +544,26 @@ impl Painter<'_> {
         Ok(mean)
     }
 
-    fn keep_memory(&self, image: Image) {
-        if let Ok(mut old) = self.old.lock() {
-            *old = Some(image);
-        }
-    }
-
     /// The engine that draws the next picture.
     fn engine(&self) -> &Engine {
         self.reopened.get().unwrap_or(&self.engine)
     }
 
-    /// Draws one frame. If the device fails, another one draws it in smaller tiles; if that fails
-    /// too, the failure is the result.
+    /// Draws one frame, on a GPU in the memory of a picture that is no longer needed. If the device
+    /// fails, another one draws it in smaller tiles; if that fails too, the failure is the result.
     fn one(
         &self,
+        old: Option<Image>,
         view: &View,
         values: &FrameValues,
         progress: &mut OnProgress<'_>,
     ) -> Result<Frame, RenderError> {
-        let drawn = self.drawn(view, values, progress);
+        let drawn = self.drawn(old, view, values, progress);
         match drawn {
             Err(error) if error.is_device_failure() && self.reopened.get().is_none() => {
                 let engine = self.reopen().ok_or(error)?;
                 self.reopened.get_or_init(|| engine);
-                self.drawn(view, values, progress)
+                self.drawn(None, view, values, progress)
             }
             drawn => drawn,
         }
@@ -587,6 +579,7 @@ impl Painter<'_> {
 
     fn drawn(
         &self,
+        old: Option<Image>,
         view: &View,
         values: &FrameValues,
         progress: &mut OnProgress<'_>,
@@ -599,7 +592,6 @@ impl Painter<'_> {
         match self.engine() {
             Engine::Gpu(pipeline) => {
                 let uniforms = uniform_values(&self.program, values);
-                let old = self.old.lock().ok().and_then(|mut old| old.take());
                 pipeline.render_in_place_of(old, view, &uniforms, &options, progress)
             }
             Engine::Cpu(scene) => scene.render(view, values, self.method, &options, progress),
@@ -629,4 +621,25 @@ fn repeated(
         spent.push(frame.milliseconds);
     }
     Ok(Repeated { frame, spent, first_drawn })
+}
+
+#[cfg(test)]
+mod tests {
+    use sdfc_render::{Clock, Footprint};
+
+    use super::*;
+
+    #[test]
+    fn the_first_picture_is_there_before_the_next_one_begins() {
+        let mut begins = Vec::new();
+        let frame = || -> Result<Frame, RenderError> {
+            begins.push(Instant::now());
+            let image = Image::new([1, 1], Footprint::default())?;
+            let (milliseconds, tiles) = (begins.len() as f64, 1);
+            Ok(Frame { image, milliseconds, clock: Clock::Gpu, tiles, culling_evaluations: 0 })
+        };
+        let Repeated { spent, first_drawn, .. } = repeated(3, frame).unwrap();
+        assert_eq!(spent, [1.0, 2.0, 3.0]);
+        assert!((begins[0]..=begins[1]).contains(&first_drawn));
+    }
 }

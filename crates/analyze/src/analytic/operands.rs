@@ -83,12 +83,19 @@ pub(crate) struct MarchedOperand {
     pub(super) scale: NodeId,
 }
 
+impl MarchedOperand {
+    /// The field of the operand's shape, or of a part of it, where the operand is in the scene.
+    fn placed(&self, graph: &mut Graph, shape: ShapeId) -> NodeId {
+        let sample = graph.sample(shape, self.point);
+        graph.mul(self.scale, sample)
+    }
+}
+
 /// A shape that bounds the parts of some operands that must be marched.
 pub(crate) fn bounding_shape(graph: &mut Graph, marched: &[MarchedOperand]) -> Option<ShapeId> {
     let mut values = Vec::with_capacity(marched.len());
     for operand in marched {
-        let sample = graph.sample(operand.bounding, operand.point);
-        values.push(graph.mul(operand.scale, sample));
+        values.push(operand.placed(graph, operand.bounding));
     }
     let formula = minimum(graph, values)?;
     let children = marched.iter().map(|operand| operand.bounding).collect();
@@ -97,7 +104,6 @@ pub(crate) fn bounding_shape(graph: &mut Graph, marched: &[MarchedOperand]) -> O
 
 /// The shape of an operand where it is in the scene, with its analytic part.
 pub(crate) fn whole_shape(graph: &mut Graph, operand: &MarchedOperand) -> ShapeId {
-    let sample = graph.sample(operand.shape, operand.point);
-    let formula = graph.mul(operand.scale, sample);
+    let formula = operand.placed(graph, operand.shape);
     unnamed_shape(graph, formula, vec![operand.shape])
 }

@@ -156,11 +156,12 @@ mod tests {
     fn a_light_is_blurred_by_the_lobe() {
         let spot = |[x, y, z]: Vector| [if x + y > 1.2 && z > 0.0 { 9.0 } else { 0.5 }; 3];
         let sharp = Octahedron::of(257, spot);
-        for (level, map) in levels(sharp.clone()).iter().enumerate().skip(2) {
-            for (normal, _, found) in map.weighted().step_by(7) {
+        for (level, map) in levels(sharp.clone()).iter().enumerate().skip(1) {
+            let apart = (map.texels.len() / 150).max(1);
+            for (normal, _, found) in map.weighted().step_by(apart) {
                 let expected = summed(&sharp, roughness(level), normal);
                 let error = (f64::from(found[0]) - expected).abs();
-                assert!(error < 0.06 * 9.0, "{level} {normal:?}: {} {expected}", found[0]);
+                assert!(error < 0.03 * 9.0, "{level} {normal:?}: {} {expected}", found[0]);
             }
         }
     }

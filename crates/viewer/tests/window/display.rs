@@ -335,7 +335,7 @@ impl<'a> Window<'a> {
             if now != before {
                 (before, changed, checked) = (now, Instant::now(), false);
             } else if changed.elapsed() > time && !checked {
-                // Both take the time of the viewer, so pixels are looked at once.
+                // Looking at pixels takes time from the viewer, so each screen is looked at once.
                 let picture = image(&now)?;
                 if expected(&picture) {
                     return Ok(picture);
