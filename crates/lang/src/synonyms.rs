@@ -66,6 +66,10 @@ const ROWS: &[(&str, &str)] = &[
     ("twist", "twirl"),
     ("bend", "cheapbend"),
     ("slice", "section projection"),
+    (
+        "sweep(circle(0.1), points)",
+        "curve spline polyline path rope wire cable hose polylinetube tubealong splinetube",
+    ),
     // Mathematics.
     ("mix", "lerp interpolate"),
     ("fract", "frac"),

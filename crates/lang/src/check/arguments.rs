@@ -131,8 +131,12 @@ impl<'a> Checker<'a> {
         };
         if let Some(first) = bound[index].first() {
             let message = format!("`{}` is given twice", name.text);
-            let found = Diagnostic::error(Code::ARGUMENTS, name.span, message)
-                .note_at(first.span, "the first one");
+            let note = match first.name {
+                Some(_) => "the first one".to_owned(),
+                None => format!("without a name, this is `{}`", name.text),
+            };
+            let found =
+                Diagnostic::error(Code::ARGUMENTS, name.span, message).note_at(first.span, note);
             self.report(found);
             return None;
         }

@@ -319,6 +319,9 @@ fn way_out(have: &Type, want: &Type) -> Option<String> {
         }
         (_, Type::Shadow) => Some("write hard or soft(8); without it, there is no shadow".into()),
         (Type::Number | Type::Int, Type::Bool) => Some("compare it: x > 0".into()),
+        (Type::List(of), Type::Number | Type::Shape(Dim::Three)) if **of == Type::Vec(3) => {
+            Some("along points, write a sweep: sweep(circle(0.1), points)".into())
+        }
         (Type::Vec(_), Type::List(_)) => Some("two to four numbers in brackets are a vector; make a list of its components with `for`: [for c in v: c]".into()),
         _ => None,
     }
