@@ -37,6 +37,16 @@ pub fn cost(graph: &Graph, roots: &[NodeId]) -> Cost {
     cost
 }
 
+/// The operations at each point that are in no loop.
+pub(crate) fn operations_outside_loops(graph: &Graph, roots: &[NodeId]) -> usize {
+    let is_counted = |&node: &NodeId| {
+        graph.stage(node) == Stage::Point
+            && graph.loops_around(node) == 0
+            && is_arithmetic(&graph.node(node))
+    };
+    reachable(graph, roots).into_iter().filter(is_counted).count()
+}
+
 /// The cost of evaluating shapes by themselves, each at its own point and without loops that stand
 /// for similar operands. `None` if one is built inside the formula of another, or if the expansion
 /// exceeds the node limit.

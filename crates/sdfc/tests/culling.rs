@@ -25,6 +25,13 @@ const SUNNY: &str = "sun(direction: [1, 2, 1], shadow: hard)\nambient(strength: 
 
 const SOFT: &str = "sun(direction: [1, 2, 1], shadow: soft(6))\nambient(strength: 0.2)\n";
 
+/// Parts whose places and sizes are linear functions of a param.
+const MOVED: &str = "param gap = 0.35 in 0.2..0.6
+union(for i in 0..150:
+  sphere(0.1 + gap * (i % 5) / 20)
+    .translate([(i % 12 - 6) * gap, (i % 7 - 3) * gap, 0.5 * gap * (i % 11 - 5)]))
+";
+
 fn main() {
     let without_gpu = testing::without_gpu();
     let scenes = [
@@ -58,6 +65,7 @@ fn main() {
                 hard().replace("sphere(0.2)", "sphere(s)")
             ),
         ),
+        ("moved and sized by a param", format!("{MOVED}{OUTSIDE}{SUNNY}")),
         ("rounded", format!("union({}).round(0.15)\n{OUTSIDE}", balls())),
         ("a shell", format!("union({}).shell(0.1)\n{OUTSIDE}", balls())),
         (

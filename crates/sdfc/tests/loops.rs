@@ -74,10 +74,16 @@ fn points() -> Vec<[f64; 3]> {
 
 fn compare(text: &str) -> Scene {
     let scenes = [LoopStrategy::Unrolled, LoopStrategy::Looped].map(|loops| compiled(text, loops));
-    let frame = FrameValues::defaults(scenes[0].params());
+    compare_fields(&scenes, &FrameValues::defaults(scenes[0].params()));
+    assert!(scenes[0].report().loops.is_empty());
+    let [_, rolled] = scenes;
+    rolled
+}
+
+fn compare_fields(scenes: &[Scene; 2], frame: &FrameValues) {
     let samples = scenes
         .each_ref()
-        .map(|scene| sample_field(scene.program(), &frame, &points()).expect("something is drawn"));
+        .map(|scene| sample_field(scene.program(), frame, &points()).expect("something is drawn"));
     for (point, (inline, rolled)) in points().iter().zip(samples[0].iter().zip(&samples[1])) {
         let off = (inline.distance - rolled.distance).abs();
         assert!(off < 1e-12, "{point:?}: {} and {}", inline.distance, rolled.distance);
@@ -86,9 +92,6 @@ fn compare(text: &str) -> Scene {
             assert!(off < 1e-9, "{point:?}: {:?} and {:?}", inline.gradient, rolled.gradient);
         }
     }
-    assert!(scenes[0].report().loops.is_empty());
-    let [_, rolled] = scenes;
-    rolled
 }
 
 #[test]
@@ -130,6 +133,62 @@ fn params_stay_params() {
     );
     let rolled = compare(&text);
     assert_eq!(rolled.report().loops.len(), 2);
+}
+
+/// Compares fields for the defaults of the params and for other values, and returns the numbers of
+/// parts in loops.
+fn parts_in_loops(text: &str) -> Vec<usize> {
+    let rolled = compare(text);
+    let scenes = [compiled(text, LoopStrategy::Unrolled), rolled];
+    let mut frame = FrameValues::defaults(scenes[0].params());
+    for round in 1..4 {
+        frame.time = 0.3 * f64::from(round);
+        for param in &mut frame.params {
+            *param = param.map(|lane| lane * 1.3 + 0.01);
+        }
+        compare_fields(&scenes, &frame);
+    }
+    scenes[1].report().loops.iter().map(|found| found.operands).collect()
+}
+
+#[test]
+fn parts_that_params_and_time_move_share_a_loop() {
+    let text = "param gap = 0.2 in 0.1..1
+param turn: angle = 10deg
+param shade: color = #806040
+let shift = shade.rgb / 4
+let parts = 24
+";
+    // The graph has folded `0 * gap` and `1 * gap`.
+    let placed = "union(for i in 0..parts:
+      box([0.2, 0.1 + 0.01 * i, gap]).translate([i * gap, 0.1, (i % 3) * gap - 0.2]))\n";
+    assert_eq!(parts_in_loops(&format!("{text}{placed}")), [24]);
+    let driven = "union(for i in 0..parts:
+      sphere(0.05 + 0.1 * gap * i / parts).translate(i * shift - [0, 0.1 + time, gap]))\n";
+    assert_eq!(parts_in_loops(&format!("{text}{driven}")), [24]);
+    let waving = "union(for i in 0..parts:
+      sphere(0.1).translate([0.1 * i, 0.2 * sin(0.3 * i + time), 0.3 * sqrt(i + gap)]))\n";
+    assert_eq!(parts_in_loops(&format!("{text}{waving}")), [24]);
+    // The first part is not rotated, and the second one by exactly `turn`.
+    let turned = "union(for i in 0..parts:
+      box([0.3, 0.1, 0.2]).rotate(y: i * turn).translate(x: 0.5))\n";
+    assert_eq!(parts_in_loops(&format!("{text}{turned}")), [23]);
+    let blended =
+        "union(for i in 0..parts: sphere(0.1).translate(x: i * gap), blend: smooth(0.1))\n";
+    assert_eq!(parts_in_loops(&format!("{text}{blended}")), [23]);
+}
+
+#[test]
+fn parts_with_a_param_each_do_not_keep_others_out_of_a_loop() {
+    let mut text = String::new();
+    for i in 0..20 {
+        let _ = writeln!(text, "param p{i} = {} in 0..1", 0.02 * i as f64 + 0.1);
+        let _ = writeln!(text, "sphere(0.1).translate([p{i}, 0, 1])");
+    }
+    for i in 0..30 {
+        let _ = writeln!(text, "sphere(0.1){}", place(i));
+    }
+    assert_eq!(parts_in_loops(&text), [30]);
 }
 
 #[test]

@@ -32,13 +32,40 @@ pub(super) fn positions_by_key<K: Eq + Hash>(keys: impl Iterator<Item = K>) -> V
     groups
 }
 
+/// Similar operands of a minimum.
+#[derive(Debug)]
+pub(super) struct Kind {
+    /// Their positions.
+    pub(super) members: Vec<usize>,
+    /// Their formula, by the index of a loop; `None` if no loop is worth it.
+    pub(super) operand: Option<NodeId>,
+}
+
+/// The kinds of the operands of a minimum. Operands without a common formula, because their
+/// per-frame values differ too much, are divided into kinds in which these differ less.
+pub(super) fn kinds(graph: &mut Graph, keys: &mut ShapeKeys, operands: &[NodeId]) -> Vec<Kind> {
+    let mut kinds = Vec::new();
+    for members in grouped(graph, keys, operands) {
+        let values: Vec<NodeId> = members.iter().map(|&at| operands[at]).collect();
+        let operand = common_operand(graph, keys, &values);
+        let is_divided = operand.is_none() && is_worth_a_loop(graph, &values);
+        match keys.stricter().filter(|_| is_divided) {
+            Some(mut stricter) => {
+                let inner = self::kinds(graph, &mut stricter, &values).into_iter();
+                kinds.extend(inner.map(|kind| Kind {
+                    members: kind.members.into_iter().map(|at| members[at]).collect(),
+                    ..kind
+                }));
+            }
+            None => kinds.push(Kind { members, operand }),
+        }
+    }
+    kinds
+}
+
 /// The formula of similar operands of a minimum, by the index of a loop; `None` if they are too few
 /// or differ in more than constants.
-pub(super) fn common_operand(
-    graph: &mut Graph,
-    keys: &ShapeKeys,
-    operands: &[NodeId],
-) -> Option<NodeId> {
+fn common_operand(graph: &mut Graph, keys: &mut ShapeKeys, operands: &[NodeId]) -> Option<NodeId> {
     if !is_worth_a_loop(graph, operands) {
         return None;
     }
@@ -50,6 +77,18 @@ pub(super) fn common_operand(
 /// Positions whose nodes are equal up to constants share a formula; all formulas are evaluated, and
 /// a list says which one counts. Returns `None` if there are more than `max_kinds` of them.
 pub(super) fn formulas_by_kind(
+    graph: &mut Graph,
+    keys: &mut ShapeKeys,
+    lists: &[&[NodeId]],
+    number: NodeId,
+    max_kinds: usize,
+) -> Option<Vec<NodeId>> {
+    let found = formulas(graph, keys, lists, number, max_kinds);
+    // Per-frame values may differ too much.
+    found.or_else(|| formulas_by_kind(graph, &mut keys.stricter()?, lists, number, max_kinds))
+}
+
+fn formulas(
     graph: &mut Graph,
     keys: &mut ShapeKeys,
     lists: &[&[NodeId]],

@@ -17,7 +17,7 @@ use sdfc_graph::{
 };
 
 use crate::reroll::blended::{MaterialLoop, joined};
-use crate::reroll::kinds::{common_operand, formulas_by_kind, grouped};
+use crate::reroll::kinds::{Kind, formulas_by_kind, kinds};
 use crate::reroll::loops::loop_over;
 use crate::reroll::rewrite::rebuilt;
 use crate::reroll::selection::{Selection, minimum, selections};
@@ -134,13 +134,14 @@ fn nearest(
 ) -> Option<Numbered> {
     let mut nearest: Option<Numbered> = None;
     let mut has_loop = false;
-    for group in grouped(graph, keys, operands) {
-        let looped = nearest_of_kind(graph, keys, operands, &group);
-        has_loop |= looped.is_some();
-        let found = looped.map_or_else(
-            || group.iter().map(|&member| alone(graph, operands, member, replaced)).collect(),
-            |looped| vec![looped],
-        );
+    for Kind { members, operand } in kinds(graph, keys, operands) {
+        has_loop |= operand.is_some();
+        let found = match operand {
+            Some(operand) => vec![nearest_of_kind(graph, operand, &members)],
+            None => {
+                members.iter().map(|&member| alone(graph, operands, member, replaced)).collect()
+            }
+        };
         for other in found {
             nearest = Some(match nearest {
                 None => other,
@@ -161,18 +162,10 @@ fn alone(
     Numbered { distance, number: graph.number(member as f64) }
 }
 
-/// The nearest of similar operands, by a loop; `None` if they are too few or have no common
-/// formula.
-fn nearest_of_kind(
-    graph: &mut Graph,
-    keys: &ShapeKeys,
-    operands: &[NodeId],
-    group: &[usize],
-) -> Option<Numbered> {
-    let members: Vec<NodeId> = group.iter().map(|&member| operands[member]).collect();
-    let operand = common_operand(graph, keys, &members)?;
+/// The nearest of similar operands with this common formula, by a loop.
+fn nearest_of_kind(graph: &mut Graph, operand: NodeId, members: &[usize]) -> Numbered {
     let index = graph.variable(0, LoopVar::Index, Type::Scalar);
-    let elements = group.iter().map(|&member| Const::new(Type::Scalar, &[member as f64]));
+    let elements = members.iter().map(|&member| Const::new(Type::Scalar, &[member as f64]));
     let elements: Vec<Const> = elements.collect();
     let number = graph.element(Table { ty: Type::Scalar, elements }, index);
     let best = [0, 1].map(|part| graph.variable(0, LoopVar::State(part), Type::Scalar));
@@ -181,8 +174,8 @@ fn nearest_of_kind(
     let step = vec![graph.min(best[0], operand), graph.select(is_nearer, number, best[1])];
     let margin = graph.number(0.0);
     let skip = Some(SkipCondition { operand, margin });
-    let result = loop_over(graph, group.len(), init, step, skip);
-    Some(Numbered { distance: result[0], number: result[1] })
+    let result = loop_over(graph, members.len(), init, step, skip);
+    Numbered { distance: result[0], number: result[1] }
 }
 
 /// The nearer one; of equal distances the one with the smaller number.

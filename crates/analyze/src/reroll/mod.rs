@@ -5,6 +5,7 @@ mod blended;
 pub(crate) mod chain;
 pub(crate) mod cullable;
 mod kinds;
+mod linear;
 mod loops;
 pub(crate) mod marched_bounds;
 pub(crate) mod materials;

@@ -16,7 +16,7 @@ use sdfc_graph::{
 
 use crate::reroll::blended::{BlendedStep, blended_step};
 use crate::reroll::chain::{self, Chain};
-use crate::reroll::kinds::{common_operand, grouped};
+use crate::reroll::kinds::{Kind, grouped, kinds};
 use crate::reroll::loops::{MIN_OPERANDS, loop_over};
 use crate::reroll::template::ShapeKeys;
 
@@ -171,11 +171,10 @@ impl Rerolling<'_> {
 
     fn plan_min(&mut self, operands: &[NodeId]) -> Vec<Part> {
         let (mut values, mut loops) = (Vec::new(), Vec::new());
-        for group in grouped(self.graph, &mut self.keys, operands) {
-            let members: Vec<NodeId> = group.iter().map(|&position| operands[position]).collect();
-            match common_operand(self.graph, &self.keys, &members) {
+        for Kind { members, operand } in kinds(self.graph, &mut self.keys, operands) {
+            match operand {
                 Some(operand) => loops.push(self.min_loop(operand, members.len())),
-                None => values.extend(members.into_iter().map(Part::Value)),
+                None => values.extend(members.into_iter().map(|at| Part::Value(operands[at]))),
             }
         }
         values.extend(loops);

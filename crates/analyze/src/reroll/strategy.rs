@@ -2,14 +2,14 @@
 
 use sdfc_graph::{Graph, NodeId, Settings, Shadow, fold_transforms};
 
-use crate::cost::cost;
+use crate::cost::{cost, operations_outside_loops};
 use crate::reroll::cullable::cullable_loops;
 use crate::reroll::rewrite::reroll;
 
 /// The strategy by which the similar operands of a scene become code.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum LoopStrategy {
-    /// [`LoopStrategy::Looped`] if the field has more operations than
+    /// [`LoopStrategy::Looped`] if loops replace more operations than
     /// [`Report::unrolled_limit`](crate::Report::unrolled_limit), otherwise
     /// [`LoopStrategy::Unrolled`].
     #[default]
@@ -77,7 +77,9 @@ fn prefers_loops(
     let folded = fold_transforms(&mut trial, &[distance]).roots;
     let roots = reroll(&mut trial, &folded).roots;
     let limit = unrolled_limit(settings, cullable_loops(&mut trial, &roots, lipschitz).len());
-    (operations > limit, limit)
+    // What no loop replaces has the same code either way.
+    let replaced = operations.saturating_sub(operations_outside_loops(&trial, &roots));
+    (replaced > limit, limit)
 }
 
 /// True if the field is evaluated on other rays than primary rays.

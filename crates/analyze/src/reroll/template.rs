@@ -1,15 +1,21 @@
 //! Nodes that are equal up to constants, and the formulas they share.
 //!
 //! Equal shape keys mean equal structure. [`template`] builds the common formula of nodes with
-//! equal keys, in which lists hold the constants that differ.
+//! equal keys, in which lists hold the constants that differ. A per-frame value may count as a
+//! constant: lists hold its factors as a linear function.
 
 use rustc_hash::FxHashMap;
 use sdfc_graph::{
     Binary, Const, Graph, IdMap, Node, NodeId, Stage, Table, Ternary, Type, Unary, reachable,
 };
 
+use crate::reroll::linear::{Linear, Linears, MAX_INPUTS};
+
 /// Largest number of subexpressions of a template. Larger ones are not worth a loop.
 const MAX_COLUMNS: usize = 4096;
+
+/// Largest number of per-frame operations that the iterations of a loop repeat.
+const MAX_FRAME_OPERATIONS: usize = 16;
 
 /// An operation without its arguments.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -26,7 +32,7 @@ enum Operation {
 /// The structure of a node without its constants.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 enum Structure {
-    /// Any constant of a type.
+    /// Any constant of a type, or any value that counts as one.
     Constant(Type),
     /// Exactly this node.
     Same(NodeId),
@@ -37,12 +43,24 @@ enum Structure {
 /// A node as an operation and its arguments. The arguments of sums and products are in an order
 /// that does not depend on the order in which they were built.
 enum View {
-    /// A constant that may differ between similar nodes.
+    /// A constant, or a value that counts as one, which may differ between similar nodes.
     Constant,
     /// A node that must be the same in all similar nodes.
     Same,
     /// An operation with arguments.
     Operation(Operation, Vec<NodeId>),
+}
+
+/// The per-frame values in which similar nodes may differ.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum PerFrame {
+    /// All that have a finite range.
+    #[default]
+    Any,
+    /// Linear functions of params and time. Other values have the same structure.
+    Linear,
+    /// None.
+    Same,
 }
 
 /// Shape keys: numbers that are equal for nodes that are equal up to constants.
@@ -51,9 +69,23 @@ pub(super) struct ShapeKeys {
     known: IdMap<u32>,
     keys: FxHashMap<Structure, u32>,
     operations: FxHashMap<Operation, u32>,
+    linears: Linears,
+    per_frame: PerFrame,
 }
 
 impl ShapeKeys {
+    /// Keys of nodes that differ in fewer per-frame values; `None` if these differ in none.
+    pub(super) fn stricter(&self) -> Option<Self> {
+        let per_frame = match self.per_frame {
+            PerFrame::Any => PerFrame::Linear,
+            PerFrame::Linear => PerFrame::Same,
+            PerFrame::Same => return None,
+        };
+        let mut stricter = Self { per_frame, ..Self::default() };
+        stricter.linears.of_raw_inputs = true;
+        Some(stricter)
+    }
+
     /// Computes the keys of all nodes that the roots depend on.
     pub(super) fn compute(&mut self, graph: &mut Graph, roots: &[NodeId]) {
         for id in reachable(graph, roots) {
@@ -92,19 +124,35 @@ impl ShapeKeys {
         self.known.insert(id, key);
     }
 
-    /// Takes a node apart.
-    fn view(&self, graph: &mut Graph, id: NodeId) -> View {
-        let node = graph.node(id);
-        if let Node::Const(constant) = node {
-            return if constant.ty() == Type::Bool { View::Same } else { View::Constant };
+    /// A per-frame value that counts as a constant, as a linear function.
+    fn linear(&mut self, graph: &mut Graph, id: NodeId) -> Option<Linear> {
+        match self.per_frame {
+            PerFrame::Any | PerFrame::Linear => self.linears.of(graph, id),
+            PerFrame::Same => None,
         }
-        if graph.stage(id) < Stage::Point {
+    }
+
+    /// True for a constant, or a value that counts as one.
+    fn is_constant(&mut self, graph: &mut Graph, id: NodeId) -> bool {
+        graph.as_const(id).is_some() || self.linear(graph, id).is_some()
+    }
+
+    /// Takes a node apart.
+    fn view(&mut self, graph: &mut Graph, id: NodeId) -> View {
+        if graph.stage(id) < Stage::Point && graph.ty(id) == Type::Bool {
             return View::Same;
         }
+        if self.is_constant(graph, id) {
+            return View::Constant;
+        }
+        if self.per_frame == PerFrame::Same && graph.stage(id) < Stage::Point {
+            return View::Same;
+        }
+        let node = graph.node(id);
         let arguments: Vec<NodeId> = graph.arguments(id).collect();
         let operation = match node {
             Node::Unary(op, _) => Operation::Unary(op),
-            Node::Binary(Binary::Sub, a, b) if graph.as_const(b).is_some() => {
+            Node::Binary(Binary::Sub, a, b) if self.is_constant(graph, b) => {
                 let b = graph.neg(b);
                 return View::Operation(Operation::Binary(Binary::Add), self.sorted(graph, a, b));
             }
@@ -130,16 +178,16 @@ impl ShapeKeys {
     }
 
     /// The operands of a sum or product in order of their rank.
-    fn sorted(&self, graph: &Graph, a: NodeId, b: NodeId) -> Vec<NodeId> {
+    fn sorted(&mut self, graph: &mut Graph, a: NodeId, b: NodeId) -> Vec<NodeId> {
         if self.rank(graph, b) < self.rank(graph, a) { vec![b, a] } else { vec![a, b] }
     }
 
     /// The sort key of an operand. The steps of a blend have no shape key, so their kind of
     /// operation comes first.
-    fn rank(&self, graph: &Graph, id: NodeId) -> (usize, u32) {
+    fn rank(&mut self, graph: &mut Graph, id: NodeId) -> (usize, u32) {
         let node = graph.node(id);
         let kinds = [
-            matches!(node, Node::Const(_)),
+            self.is_constant(graph, id),
             matches!(node, Node::Binary(Binary::Min, ..)),
             matches!(node, Node::Binary(Binary::Mul, ..)),
         ];
@@ -160,10 +208,12 @@ enum Expression {
 
 struct Merging<'a> {
     graph: &'a mut Graph,
-    keys: &'a ShapeKeys,
+    keys: &'a mut ShapeKeys,
     expressions: Vec<Expression>,
     known: FxHashMap<Vec<NodeId>, usize>,
     columns: Vec<Vec<Const>>,
+    /// The number of per-frame operations that iterations repeat.
+    frame_operations: usize,
 }
 
 /// Builds one formula for each list of nodes, whose value is the list's node i where `index` is i.
@@ -171,13 +221,13 @@ struct Merging<'a> {
 /// constants.
 pub(super) fn template(
     graph: &mut Graph,
-    keys: &ShapeKeys,
+    keys: &mut ShapeKeys,
     lists: &[&[NodeId]],
     given: &[(&[NodeId], NodeId)],
     index: NodeId,
 ) -> Option<Vec<NodeId>> {
     let (expressions, known, columns) = Default::default();
-    let mut merging = Merging { graph, keys, expressions, known, columns };
+    let mut merging = Merging { graph, keys, expressions, known, columns, frame_operations: 0 };
     for (list, formula) in given {
         merging.add(list.to_vec(), Expression::Same(*formula));
     }
@@ -222,6 +272,16 @@ impl Merging<'_> {
             self.columns.push(constants);
             return Some(self.add(column, Expression::Column(number)));
         }
+        if column.iter().all(|&id| self.graph.stage(id) < Stage::Point) {
+            if let Some(sum) = self.linear(&column) {
+                self.known.insert(column, sum);
+                return Some(sum);
+            }
+            self.frame_operations += 1;
+            if self.frame_operations > MAX_FRAME_OPERATIONS {
+                return None;
+            }
+        }
         let View::Operation(operation, arguments) = self.keys.view(self.graph, first) else {
             return None;
         };
@@ -241,6 +301,43 @@ impl Merging<'_> {
             lists.into_iter().map(|list| self.expression(list)).collect();
         let arguments = arguments?;
         Some(self.add(column, Expression::Operation(operation, arguments)))
+    }
+
+    /// The linear functions of a column as one function of the inputs, whose factors are columns.
+    fn linear(&mut self, column: &[NodeId]) -> Option<usize> {
+        let ty = self.graph.ty(*column.first()?);
+        let of = |id: &NodeId| self.keys.linear(self.graph, *id);
+        let functions: Vec<Linear> = column.iter().map(of).collect::<Option<_>>()?;
+        let mut inputs: Vec<NodeId> = Vec::new();
+        for (input, _) in functions.iter().flat_map(|function| &function.terms) {
+            if !inputs.contains(input) {
+                inputs.push(*input);
+            }
+        }
+        if inputs.len() > MAX_INPUTS {
+            return None;
+        }
+        let mut sum = self.constants(ty, functions.iter().map(|function| function.offset))?;
+        for input in inputs {
+            let factors = functions.iter().map(|function| function.factors(input));
+            let factor = self.constants(ty, factors)?;
+            let value = self.graph.splat(ty, input);
+            let value = self.expression(vec![value; column.len()])?;
+            let product = self.push(Operation::Binary(Binary::Mul), vec![value, factor]);
+            sum = self.push(Operation::Binary(Binary::Add), vec![product, sum]);
+        }
+        Some(sum)
+    }
+
+    /// The subexpression of a column of constants.
+    fn constants(&mut self, ty: Type, lanes: impl Iterator<Item = [f64; 4]>) -> Option<usize> {
+        let column = lanes.map(|lanes| self.graph.constant(ty, &lanes[..ty.width()])).collect();
+        self.expression(column)
+    }
+
+    fn push(&mut self, operation: Operation, arguments: Vec<usize>) -> usize {
+        self.expressions.push(Expression::Operation(operation, arguments));
+        self.expressions.len() - 1
     }
 
     /// Builds the nodes of all subexpressions.
