@@ -5,7 +5,10 @@
 //! and makes 10,000 edits. Without the variable it takes a part of both.
 #![allow(missing_docs, clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
+use std::num::NonZero;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::thread;
 
 use sdfc_ide::{
     Analysis, Resolver, ShapeFacts, actions, colors, complete, definition, diagnostics, folds,
@@ -91,10 +94,22 @@ fn ask_whole(scene: &Analysis) {
     format(text);
 }
 
+/// Checks all items on all cores.
+fn check_all<T: Sync>(items: &[T], check: impl Fn(&T) + Sync) {
+    let next = AtomicUsize::new(0);
+    let work = || {
+        while let Some(item) = items.get(next.fetch_add(1, Ordering::Relaxed)) {
+            check(item);
+        }
+    };
+    let threads = thread::available_parallelism().map_or(1, NonZero::get);
+    thread::scope(|scope| (0..threads).for_each(|_| _ = scope.spawn(work)));
+}
+
 #[test]
 fn every_request_is_answered_everywhere() {
-    for (name, text, folder) in scenes() {
-        let scene = Analysis::new(&name, &text, &folder);
+    check_all(&scenes(), |(name, text, folder)| {
+        let scene = Analysis::new(name, text, folder);
         let found = diagnostics(&scene, false);
         assert!(
             found.iter().all(|it| it.severity < sdfc_ide::Severity::Error),
@@ -104,11 +119,11 @@ fn every_request_is_answered_everywhere() {
         (0..=text.len()).step_by(stride()).for_each(|offset| ask_at(&scene, offset));
         let between = if is_complete() { 1 } else { (text.len() / 12).max(1) };
         for offset in (0..=text.len()).step_by(between) {
-            for it in complete(&name, &text, offset, &folder, &[]) {
+            for it in complete(name, text, offset, folder, &[]) {
                 assert!(text.get(it.replace.clone()).is_some(), "{it:?} in {name}");
             }
         }
-    }
+    });
 }
 
 /// A generator of pseudo-random numbers (xorshift).
