@@ -108,6 +108,7 @@ fn wrong_calls_are_reported() {
         "camera(target: [0, 0, 0])\ncamera(eye: [1, 2, 3])\nsun(shadow: 8)\nsphere(1)\nlet s = sun(direction: [1, 2, 3])",
         "camera(eye: [1, 2, 3], fov: 40deg, height: 3)\nambient(1, 2, 3)\nsphere(camera)",
         "let line = [[0, 0, 0], [1, 0, 0], [1, 1, 0]]\ntube(line, r: 0.1)\npipe(line)\nrope(line)\nsphere(smin(1, 2, 0.1))",
+        "let letters = \"QWERTY\"\ntext(letters[1])",
         "fn f(a = 1) exact = a\nsolid g() -> number\n lipschitz 1\n lipschitz 2\n = f()\ng()\nlet h = fn(a = 1, b: number...) bounds 0..1 = a",
     ]));
 }

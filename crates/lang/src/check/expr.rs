@@ -204,7 +204,11 @@ impl<'a> Checker<'a> {
             (Type::Vec(_) | Type::Color, _) => Type::Number,
             (other, _) => {
                 let message = format!("{} cannot be indexed", describe(other));
-                self.report(Diagnostic::error(Code::BAD_OPERAND, base.span, message));
+                let found = Diagnostic::error(Code::BAD_OPERAND, base.span, message);
+                self.report(match other {
+                    Type::Text => found.help("write a list of strings: [\"A\", \"B\", \"C\"]"),
+                    _ => found,
+                });
                 return poison(span);
             }
         };
