@@ -66,6 +66,10 @@ pub struct Measure {
     /// Measure the smallest distance between two solids instead, by their names in the scene
     #[arg(long, value_name = "NAME", num_args = 2)]
     pub between: Vec<String>,
+    /// Measure the thinnest wall instead: the least distance from the surface along the inward
+    /// normal to where the solid ends
+    #[arg(long, conflicts_with = "between")]
+    pub thinnest_wall: bool,
     /// Print JSON to stdout
     #[arg(long)]
     pub json: bool,
