@@ -81,6 +81,7 @@ mod report;
 mod shell;
 mod simplify;
 mod surface;
+mod surroundings;
 mod tree;
 mod vector;
 mod wall;

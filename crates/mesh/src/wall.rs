@@ -10,11 +10,11 @@ use serde::Serialize;
 
 use crate::certify::parts;
 use crate::error::{MeshError, Phase, Progress};
-use crate::fan::{Found, Surroundings};
 use crate::field::{Field, LocalField};
 use crate::measurement::{MeasureOptions, Proven};
 use crate::mesh::check_relative;
 use crate::refine::report;
+use crate::surroundings::{Found, Surroundings};
 use crate::vector::{Vec3, between};
 use crate::witness::{Finder, Witness};
 
@@ -83,14 +83,15 @@ pub fn thinnest_wall(
     // sides of boxes.
     let cube = [about.map(|x| x - 0.5087 * longest), about.map(|x| x + 0.5113 * longest)];
     let mut search = Search {
+        field: local.clone(),
         longest,
         tolerance: relative * longest,
         best: None,
-        open: BinaryHeap::from([Open { least: 0.0, bounds: cube, field: local.clone() }]),
+        open: BinaryHeap::from([Open { least: 0.0, bounds: cube, field: local }]),
         undecided: Vec::new(),
         cells: 0,
     };
-    search.start(&local, bounds);
+    search.start(bounds);
     let is_limited = search.run(max_cells, progress)?;
     Ok(search.result(is_limited))
 }
@@ -131,6 +132,8 @@ struct Division<'f> {
 
 /// The state of the search.
 struct Search<'f> {
+    /// The field everywhere.
+    field: LocalField<'f>,
     longest: f64,
     tolerance: f64,
     best: Option<Witness>,
@@ -150,7 +153,8 @@ impl<'f> Search<'f> {
     }
 
     /// Looks for walls from points of a grid.
-    fn start(&mut self, field: &LocalField<'f>, [lo, hi]: [Vec3; 2]) {
+    fn start(&mut self, [lo, hi]: [Vec3; 2]) {
+        let field = self.field.clone();
         let mut prober = field.prober();
         let mut finder = Finder { prober: &mut prober, longest: self.longest };
         let reach = self.longest / STARTS as f64;
@@ -220,22 +224,25 @@ impl<'f> Search<'f> {
             Some(_) => field.around(bounds, 1.2 * side + 2.0 * target),
             None => field,
         };
-        let mut surroundings = Surroundings::new(&field);
+        let mut surroundings = Surroundings::new(&field, self.tolerance);
         let mut division = Division { open: Vec::new(), wall: None, cells: 0 };
         for bounds in parts(bounds, false) {
-            let Found::Thickness(found) = surroundings.examine(bounds, target) else { continue };
+            let found = surroundings.examine(bounds, target);
+            let Found::Thickness(found) = found else { continue };
             if found >= target {
                 continue;
             }
             let open = Open { least: found.max(least), bounds, field: field.clone() };
             division.open.push(open);
-            let prober = &mut surroundings.prober;
-            let mut finder = Finder { prober, longest: self.longest };
-            let limit = division.wall.map_or(self.upper(), |wall| wall.thickness);
-            let limit = limit.min(2.0 * self.longest);
-            if let Some(wall) = finder.wall(between(bounds[0], bounds[1], 0.5), side, limit) {
-                division.wall = Some(finder.improve(wall, 0.25 * side));
-            }
+        }
+        if let Some(open) = division.open.first() {
+            // The field around the box is not true where the search may lead.
+            let mut prober = self.field.prober();
+            let mut finder = Finder { prober: &mut prober, longest: self.longest };
+            let middle = between(open.bounds[0], open.bounds[1], 0.5);
+            let limit = self.upper().min(2.0 * self.longest);
+            let wall = finder.wall(middle, side, limit);
+            division.wall = wall.map(|wall| finder.improve(wall, 0.25 * side));
         }
         division.cells = surroundings.cells;
         division
