@@ -46,7 +46,7 @@ pub struct Wall {
 
 impl Wall {
     /// The most undecided boxes that are listed.
-    pub const MAX_BOXES: usize = 100;
+    pub const MAX_BOXES: usize = 10;
 }
 
 /// Boxes that are divided at once.

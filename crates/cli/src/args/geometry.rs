@@ -58,8 +58,8 @@ pub struct Contour {
 pub struct Measure {
     /// The scene; `-` is stdin
     pub file: PathBuf,
-    /// Measure the volume to this fraction of itself; the center of mass and the extent to this
-    /// fraction of the longest side of the scene's bounds
+    /// Measure the volume to this fraction of itself; the center of mass, the extent, the clearance
+    /// and the thinnest wall to this fraction of the longest side of the scene's bounds
     #[arg(long, value_name = "FRACTION", default_value_t = 0.001, value_parser = length,
           allow_negative_numbers = true)]
     pub error_relative: f64,
