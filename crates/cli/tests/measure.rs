@@ -41,7 +41,7 @@ fn the_thinnest_wall_is_printed() {
         run("sphere(1) - sphere(0.75)\n", &["--thinnest-wall", "--error-relative", "0.02"]);
     assert_eq!(output.status.code(), Some(0));
     let text = String::from_utf8(output.stdout).unwrap();
-    let words = ["thinnest wall     0.20999 .. 0.25001\n", "end of the wall   ["];
+    let words = ["thinnest wall     0.21 .. 0.251\n", "end of the wall   ["];
     assert!(words.iter().all(|word| text.contains(word)), "{text}");
     let args = ["--thinnest-wall", "--error-relative", "0.02", "--json"];
     let output = run("sphere(1) - sphere(0.75)\nplane(y: -1)\n", &args);
