@@ -34,3 +34,26 @@ fn a_scene_without_a_limit_is_refused() {
     let message = String::from_utf8(output.stderr).unwrap();
     assert!(message.contains("cut it with a box"), "{message}");
 }
+
+#[test]
+fn the_thinnest_wall_is_printed() {
+    let output =
+        run("sphere(1) - sphere(0.75)\n", &["--thinnest-wall", "--error-relative", "0.02"]);
+    assert_eq!(output.status.code(), Some(0));
+    let text = String::from_utf8(output.stdout).unwrap();
+    let words = ["thinnest wall     0.21 .. 0.251\n", "end of the wall   ["];
+    assert!(words.iter().all(|word| text.contains(word)), "{text}");
+    let args = ["--thinnest-wall", "--error-relative", "0.02", "--json"];
+    let output = run("sphere(1) - sphere(0.75)\nplane(y: -1)\n", &args);
+    let report: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert!(report["thickness"][0].as_f64().unwrap() < 0.25, "{report}");
+    assert_eq!(report["left_out"].as_array().unwrap().len(), 1);
+}
+
+#[test]
+fn a_thinnest_wall_is_not_measured_between_solids() {
+    let output = run("let a = sphere(1)\na\n", &["--thinnest-wall", "--between", "a", "a"]);
+    assert_eq!(output.status.code(), Some(2));
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert!(message.contains("--thinnest-wall") && message.contains("--between"), "{message}");
+}

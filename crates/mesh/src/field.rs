@@ -191,6 +191,11 @@ impl<'f> LocalField<'f> {
         proven(shrunk(range, part), self.level)
     }
 
+    /// Returns the field's evaluator in a number type.
+    pub(crate) fn prepare<N: Number>(&self) -> Evaluator<'_, N> {
+        self.tape().prepare(self.frame)
+    }
+
     /// Returns the field with registers.
     pub(crate) fn prober(&self) -> Prober<'_> {
         let tape = self.tape();

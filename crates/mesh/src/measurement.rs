@@ -49,8 +49,8 @@ pub struct Measurements {
 pub struct MeasureOptions {
     /// Lowest and highest corner of a box around the solid, in scene units.
     pub bounds: [[f64; 3]; 2],
-    /// The volume is measured to this fraction of itself; the center of mass and the extent to this
-    /// fraction of the longest side of the bounds.
+    /// The volume is measured to this fraction of itself; the center of mass, the extent, the
+    /// clearance and the thinnest wall to this fraction of the longest side of the bounds.
     pub relative: f64,
     /// The most boxes that are examined.
     pub max_cells: u64,

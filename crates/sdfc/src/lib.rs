@@ -83,6 +83,7 @@ mod software;
 mod source_id;
 mod tapes;
 mod uniforms;
+mod wall;
 
 #[cfg(feature = "mesh")]
 pub use bake::BakeOptions;
@@ -126,6 +127,7 @@ pub use sdfc_mesh::{
     Clearance, Contour, ContourCertificate, ContourFormat, ContourPath, ContourReport,
     DistanceGrid, EncodeError, GridFormat, Measurements, Mesh, MeshCertificate, MeshError,
     MeshFormat, MeshReport, Phase as MeshPhase, Plane, Progress as MeshProgress, Proven, Shell,
+    Wall,
 };
 #[cfg(feature = "render")]
 pub use sdfc_render::{Animation, Image, Progress, RasterKind, Stats, Tile, no_progress};

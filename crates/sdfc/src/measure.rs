@@ -12,8 +12,8 @@ use crate::scene::Scene;
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct MeasureOptions {
-    /// The volume is measured to this fraction of itself; the center of mass and the extent to this
-    /// fraction of the longest side of the scene's bounds.
+    /// The volume is measured to this fraction of itself; the center of mass, the extent, the
+    /// clearance and the thinnest wall to this fraction of the longest side of the scene's bounds.
     pub relative: f64,
     /// Values of params, time and frame; `None` takes the defaults at time 0.
     pub frame: Option<FrameValues>,

@@ -58,14 +58,18 @@ pub struct Contour {
 pub struct Measure {
     /// The scene; `-` is stdin
     pub file: PathBuf,
-    /// Measure the volume to this fraction of itself; the center of mass and the extent to this
-    /// fraction of the longest side of the scene's bounds
+    /// Measure the volume to this fraction of itself; the center of mass, the extent, the clearance
+    /// and the thinnest wall to this fraction of the longest side of the scene's bounds
     #[arg(long, value_name = "FRACTION", default_value_t = 0.001, value_parser = length,
           allow_negative_numbers = true)]
     pub error_relative: f64,
     /// Measure the smallest distance between two solids instead, by their names in the scene
     #[arg(long, value_name = "NAME", num_args = 2)]
     pub between: Vec<String>,
+    /// Measure the thinnest wall instead: the least distance from the surface along the inward
+    /// normal to where the solid ends
+    #[arg(long, conflicts_with = "between")]
+    pub thinnest_wall: bool,
     /// Print JSON to stdout
     #[arg(long)]
     pub json: bool,

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use sdfc::{Clearance, MeasureOptions, Measurements, Proven};
+use sdfc::{Clearance, MeasureOptions, Measurements, Proven, Scene, Wall};
 
 use crate::args;
 use crate::console::Console;
@@ -18,31 +18,12 @@ use crate::output;
 pub fn run(args: &args::Measure, console: &Console) -> Result<(), Failure> {
     let scene = super::scene_with(&args.file, super::compiler(), &args.values.params.set, console)?;
     let frame = super::values(&scene, args.values.time);
-    let options = MeasureOptions::new().relative(args.error_relative).frame(frame.clone());
+    let options = MeasureOptions::new().relative(args.error_relative).frame(frame);
     let options = args.max_cells.map_or(options.clone(), |limit| options.max_cells(limit));
     let (text, is_limited) = match &args.between[..] {
-        [first, second] => {
-            let found = super::mesh_work("measuring", console, |progress| {
-                scene.clearance([first, second], &options, progress)
-            })?;
-            let text = match args.json {
-                true => output::json(&found)?,
-                false => clearance_table(&found).into_bytes(),
-            };
-            (text, found.is_limited)
-        }
-        _ => {
-            let found = super::mesh_work("measuring", console, |progress| {
-                scene.measure(&options, progress)
-            })?;
-            let reported = scene.reported(&frame, &found);
-            super::note_left_out(&reported.left_out, console);
-            let text = match args.json {
-                true => output::json(&reported)?,
-                false => table(&found).into_bytes(),
-            };
-            (text, found.is_limited)
-        }
+        [first, second] => clearance(&scene, [first, second], &options, args.json, console)?,
+        _ if args.thinnest_wall => wall(&scene, &options, args.json, console)?,
+        _ => measurements(&scene, &options, args.json, console)?,
     };
     if is_limited {
         console.warning(&format!(
@@ -51,6 +32,88 @@ pub fn run(args: &args::Measure, console: &Console) -> Result<(), Failure> {
         ));
     }
     output::to_stdout(&text)
+}
+
+/// A text to print, and whether the limit of boxes was reached.
+type Printed = (Vec<u8>, bool);
+
+fn measurements(
+    scene: &Scene,
+    options: &MeasureOptions,
+    is_json: bool,
+    console: &Console,
+) -> Result<Printed, Failure> {
+    let found =
+        super::mesh_work("measuring", console, |progress| scene.measure(options, progress))?;
+    let is_limited = found.is_limited;
+    Ok((printed(scene, options, found, table, is_json, console)?, is_limited))
+}
+
+fn wall(
+    scene: &Scene,
+    options: &MeasureOptions,
+    is_json: bool,
+    console: &Console,
+) -> Result<Printed, Failure> {
+    let found =
+        super::mesh_work("measuring", console, |progress| scene.thinnest_wall(options, progress))?;
+    let is_limited = found.is_limited;
+    Ok((printed(scene, options, found, wall_table, is_json, console)?, is_limited))
+}
+
+/// Returns a report about a scene as JSON or as a table, and notes which solids it ignores.
+fn printed<T: serde::Serialize>(
+    scene: &Scene,
+    options: &MeasureOptions,
+    found: T,
+    table: impl Fn(&T) -> String,
+    is_json: bool,
+    console: &Console,
+) -> Result<Vec<u8>, Failure> {
+    let frame = options.frame.clone().unwrap_or_else(|| scene.defaults());
+    let reported = scene.reported(&frame, found);
+    super::note_left_out(&reported.left_out, console);
+    match is_json {
+        true => output::json(&reported),
+        false => Ok(table(&reported.report).into_bytes()),
+    }
+}
+
+fn clearance(
+    scene: &Scene,
+    names: [&str; 2],
+    options: &MeasureOptions,
+    is_json: bool,
+    console: &Console,
+) -> Result<Printed, Failure> {
+    let found = super::mesh_work("measuring", console, |progress| {
+        scene.clearance(names, options, progress)
+    })?;
+    let text = match is_json {
+        true => output::json(&found)?,
+        false => clearance_table(&found).into_bytes(),
+    };
+    Ok((text, found.is_limited))
+}
+
+fn wall_table(found: &Wall) -> String {
+    let thickness = match found.thickness {
+        Some(thickness) => interval(thickness),
+        None if found.is_absent => "no wall".to_owned(),
+        None => "no wall was found".to_owned(),
+    };
+    let mut text = format!("thinnest wall     {thickness}\n");
+    for point in found.at.into_iter().flatten() {
+        text += &format!("end of the wall   {point:?}\n");
+    }
+    if found.undecided > 0 {
+        let boxes = if found.undecided == 1 { "box" } else { "boxes" };
+        text += &format!(
+            "not decided       walls from {} small {boxes} may be thinner\n",
+            found.undecided
+        );
+    }
+    text
 }
 
 fn clearance_table(found: &Clearance) -> String {
