@@ -228,3 +228,6 @@ fn around(prism: &Prism) -> [Vec3; 2] {
     let half = [0, 1, 2].map(|i| half[i] * (1.0 + 1e-12) + 1e-15 * prism.center[i].abs());
     [sub(prism.center, half), add(prism.center, half)]
 }
+
+#[cfg(test)]
+mod tests;
