@@ -186,11 +186,11 @@ fn no_wall_from_a_box_is_thinner_than_what_is_proven() {
             Ok(())
         };
         let config =
-            ProptestConfig { cases: 3000, failure_persistence: None, ..Default::default() };
+            ProptestConfig { cases: 1500, failure_persistence: None, ..Default::default() };
         let mut runner = TestRunner::new(config);
         runner.run(&case(), check).unwrap_or_else(|fault| panic!("{name}: {fault}"));
         let counts = counts.into_inner();
         let of = |what| counts.get(what).copied().unwrap_or(0);
-        assert!(of("walls") > 500 && of("part") > 30 && of("whole") > 30, "{name}: {counts:?}");
+        assert!(of("walls") > 200 && of("part") > 10 && of("whole") > 10, "{name}: {counts:?}");
     }
 }
