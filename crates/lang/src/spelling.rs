@@ -30,7 +30,7 @@ impl Meant {
 /// this language, or one with a similar spelling.
 pub fn meant<'n>(name: &str, names: impl Iterator<Item = &'n str>) -> Option<Meant> {
     let names: Vec<&str> = names.collect();
-    let here = |here: &str| Meant { message: told(here), instead: here.to_owned() };
+    let here = |here: &str| Meant { message: sentence_for(here), instead: here.to_owned() };
     synonyms::of_quilez(name)
         .map(here)
         .or_else(|| synonyms::respelt(name, &names).map(ask))
@@ -44,7 +44,7 @@ pub fn meant<'n>(name: &str, names: impl Iterator<Item = &'n str>) -> Option<Mea
 
 /// The sentence with the expression to write here. Other tools blend distances, which are numbers,
 /// by the functions that blend shapes.
-fn told(here: &str) -> String {
+fn sentence_for(here: &str) -> String {
     let sentence = format!("that is `{here}` here");
     let blend = here.strip_prefix("union(a, b, blend: ").and_then(|rest| rest.strip_suffix(')'));
     match blend {

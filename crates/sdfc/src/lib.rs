@@ -83,6 +83,7 @@ mod software;
 mod source_id;
 mod tapes;
 mod uniforms;
+#[cfg(feature = "mesh")]
 mod wall;
 
 #[cfg(feature = "mesh")]

@@ -1,9 +1,9 @@
 //! Per-frame values as linear functions of a few inputs.
 //!
 //! Parts that a param moves differ in values such as `3 * gap` and `0.2 + 4 * gap`. The graph has
-//! folded some of them: `0 * gap` is 0, and `1 * gap` is `gap`. As linear functions all of them have
-//! the same form, so that lists can hold their factors. The inputs are params and the time, or also
-//! other per-frame values.
+//! folded some of them: `0 * gap` is 0, and `1 * gap` is `gap`. As linear functions, all of them
+//! have the same form, so that lists can hold their factors. The inputs are params and the time, or
+//! also other per-frame values.
 
 use rustc_hash::FxHashMap;
 use sdfc_graph::{Binary, Const, Graph, Node, NodeId, Stage, Type, Unary};
