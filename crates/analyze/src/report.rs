@@ -17,7 +17,7 @@ use crate::shapes::shapes_below;
 pub struct Report {
     /// The loops that stand for similar operands; empty if the field is unrolled.
     pub loops: Vec<RerolledLoop>,
-    /// The number of operations up to which the field would have been unrolled.
+    /// The number of operations that loops must replace, or the field stays unrolled.
     pub unrolled_limit: usize,
     /// Leaf shapes in one evaluation of the field: shapes without children at distinct points.
     pub leaves: usize,

@@ -11,6 +11,7 @@ use crate::error::{MeshError, Phase, Progress};
 use crate::field::{Field, LocalField, Prism, Prober};
 use crate::mesh::check_bounds;
 use crate::refine::report;
+use crate::vector::longest_side;
 
 /// Samples of a scene's field at the points of a regular grid.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -146,7 +147,7 @@ fn layout(options: &BakeOptions) -> Result<DistanceGrid, MeshError> {
     if resolution < 4 {
         return refused(resolution);
     }
-    let longest = (0..3).fold(0.0, |side: f64, axis| side.max(hi[axis] - lo[axis]));
+    let longest = longest_side([lo, hi]);
     // One cell more on each side.
     let spacing = longest / (resolution - 3) as f64;
     let sides = [0, 1, 2].map(|axis| ((hi[axis] - lo[axis]) / spacing - 1e-9).ceil() + 3.0);

@@ -13,7 +13,7 @@ use crate::field::{Field, LocalField, Prism, Prober};
 use crate::measurement::{MeasureOptions, Proven};
 use crate::mesh::check_relative;
 use crate::refine::report;
-use crate::vector::{Vec3, add, between, length, scale, sub, unit};
+use crate::vector::{Vec3, add, between, length, longest_side, scale, sub, unit};
 
 /// The smallest distance between two solids.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -64,8 +64,7 @@ pub fn clearance(
     let fields = [&first, &second].map(|field| LocalField::new(field.distance(), frame));
     let [first, second] = &fields;
     let mut pair = Pair { probers: [first.prober(), second.prober()], best: None };
-    let [lo, hi] = bounds;
-    let longest = (0..3).fold(0.0, |side: f64, axis| side.max(hi[axis] - lo[axis]));
+    let longest = longest_side(bounds);
     let mut waiting = BinaryHeap::from([Waiting { least: pair.least(bounds), bounds }]);
     let mut cells = 0;
     let mut is_limited = false;

@@ -11,6 +11,7 @@ use crate::extent::reach;
 use crate::field::{Field, LocalField};
 use crate::mesh::check_relative;
 use crate::moments::{Integrals, Integrator, PAIRS};
+use crate::vector::longest_side;
 
 /// A number that is proven to lie between two others, both included.
 pub type Proven = [f64; 2];
@@ -102,8 +103,7 @@ pub fn measure(
     let local = LocalField::new(field.distance(), frame);
     let integrator = Integrator { field: &local, bounds, relative, max_cells };
     let integrals = integrator.integrate(progress)?;
-    let [lo, hi] = bounds;
-    let longest = (0..3).fold(0.0, |side: f64, axis| side.max(hi[axis] - lo[axis]));
+    let longest = longest_side(bounds);
     let mut prober = local.prober();
     let mut ends = |is_up: bool| {
         let inner = integrals.inner?;

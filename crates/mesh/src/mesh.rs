@@ -10,6 +10,7 @@ use crate::field::{Field, LocalField};
 use crate::grid::Grid;
 use crate::make::Maker;
 use crate::surface::Mesh;
+use crate::vector::longest_side;
 
 /// Makes a closed mesh of a program's surface, with a certificate.
 ///
@@ -66,7 +67,7 @@ pub(crate) fn check_relative(bounds: [[f64; 3]; 2], relative: f64) -> Result<(),
 pub(crate) fn check(bounds: [[f64; 3]; 2], error: f64) -> Result<(), MeshError> {
     // The bounds first, because an error relative to infinite bounds is infinite.
     check_relative(bounds, error)?;
-    let longest = (0..3).map(|axis| bounds[1][axis] - bounds[0][axis]).fold(0.0, f64::max);
+    let longest = longest_side(bounds);
     // Such an error allows a mesh that misses the whole scene. A scene without a size has its own
     // message.
     if longest > 0.0 && error > longest {

@@ -9,6 +9,11 @@ pub(crate) struct SurfacePoint {
     pub(crate) normal: Vec3,
 }
 
+/// Returns the longest side of a box.
+pub(crate) fn longest_side([lo, hi]: [Vec3; 2]) -> f64 {
+    (0..3).map(|axis| hi[axis] - lo[axis]).fold(0.0, f64::max)
+}
+
 pub(crate) fn add(a: Vec3, b: Vec3) -> Vec3 {
     [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
 }

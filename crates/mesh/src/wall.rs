@@ -15,7 +15,7 @@ use crate::measurement::{MeasureOptions, Proven};
 use crate::mesh::check_relative;
 use crate::refine::report;
 use crate::surroundings::{Found, Surroundings};
-use crate::vector::{Vec3, between};
+use crate::vector::{Vec3, between, longest_side};
 use crate::witness::{Finder, Witness};
 
 /// The thinnest wall of a solid.
@@ -77,7 +77,7 @@ pub fn thinnest_wall(
     check_relative(bounds, relative)?;
     let local = LocalField::new(field.distance(), frame);
     let [lo, hi] = bounds;
-    let longest = (0..3).fold(0.0, |side: f64, axis| side.max(hi[axis] - lo[axis]));
+    let longest = longest_side(bounds);
     let about = between(lo, hi, 0.5);
     // A cube a little larger than the bounds, so that round numbers of the scene are not on the
     // sides of boxes.

@@ -60,9 +60,7 @@ impl Scene {
             bounds[1] = [0, 1, 2].map(|axis| bounds[1][axis].max(hi[axis]));
         }
         let [first, second] = &programs[..] else { return Err(Error::NothingDrawn) };
-        let options = sdfc_mesh::MeasureOptions::new(bounds)
-            .relative(options.relative)
-            .max_cells(options.max_cells);
+        let options = options.within(bounds);
         let solids = [first, second];
         Ok(sdfc_mesh::clearance(solids, &frame, &options, is_certified, progress)?)
     }

@@ -51,6 +51,11 @@ impl MeasureOptions {
     pub fn max_cells(self, max_cells: u64) -> Self {
         Self { max_cells, ..self }
     }
+
+    /// Returns the options for solids in a box.
+    pub(crate) fn within(&self, bounds: [[f64; 3]; 2]) -> sdfc_mesh::MeasureOptions {
+        sdfc_mesh::MeasureOptions::new(bounds).relative(self.relative).max_cells(self.max_cells)
+    }
 }
 
 impl Scene {
@@ -84,9 +89,7 @@ impl Scene {
         self.needs_solids("a measurement")?;
         let frame = options.frame.clone().unwrap_or_else(|| self.defaults());
         let limited = self.limited(&frame)?;
-        let options = sdfc_mesh::MeasureOptions::new(limited.bounds)
-            .relative(options.relative)
-            .max_cells(options.max_cells);
+        let options = options.within(limited.bounds);
         Ok(sdfc_mesh::measure(&limited.program, &frame, &options, progress)?)
     }
 }

@@ -40,9 +40,7 @@ impl Scene {
         self.needs_solids("a measurement")?;
         let frame = options.frame.clone().unwrap_or_else(|| self.defaults());
         let limited = self.limited(&frame)?;
-        let options = sdfc_mesh::MeasureOptions::new(limited.bounds)
-            .relative(options.relative)
-            .max_cells(options.max_cells);
+        let options = options.within(limited.bounds);
         Ok(sdfc_mesh::thinnest_wall(&limited.program, &frame, &options, progress)?)
     }
 }

@@ -44,23 +44,23 @@ pub(super) struct Kind {
 /// The kinds of the operands of a minimum. Operands without a common formula, because their
 /// per-frame values differ too much, are divided into kinds in which these differ less.
 pub(super) fn kinds(graph: &mut Graph, keys: &mut ShapeKeys, operands: &[NodeId]) -> Vec<Kind> {
-    let mut kinds = Vec::new();
+    let mut found = Vec::new();
     for members in grouped(graph, keys, operands) {
         let values: Vec<NodeId> = members.iter().map(|&at| operands[at]).collect();
         let operand = common_operand(graph, keys, &values);
         let is_divided = operand.is_none() && is_worth_a_loop(graph, &values);
         match keys.stricter().filter(|_| is_divided) {
             Some(mut stricter) => {
-                let inner = self::kinds(graph, &mut stricter, &values).into_iter();
-                kinds.extend(inner.map(|kind| Kind {
+                let inner = kinds(graph, &mut stricter, &values).into_iter();
+                found.extend(inner.map(|kind| Kind {
                     members: kind.members.into_iter().map(|at| members[at]).collect(),
                     ..kind
                 }));
             }
-            None => kinds.push(Kind { members, operand }),
+            None => found.push(Kind { members, operand }),
         }
     }
-    kinds
+    found
 }
 
 /// The formula of similar operands of a minimum, by the index of a loop; `None` if they are too few

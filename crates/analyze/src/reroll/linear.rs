@@ -51,7 +51,7 @@ impl Linear {
 
     /// The function times a constant.
     fn scaled(self, factor: [f64; 4]) -> Self {
-        // The lanes beyond the width of a type are 0, also if 1 was divided by those of a constant.
+        // Lanes beyond the width of a type stay 0, also where the factor is the infinite 1 / 0.
         self.map(|lanes| {
             std::array::from_fn(|at| if lanes[at] == 0.0 { 0.0 } else { factor[at] * lanes[at] })
         })

@@ -29,7 +29,8 @@ const LOOP_COSTS: [usize; 2] = [125, 250];
 /// The limit for loops that run all of their iterations.
 const LIMIT_WITHOUT_LISTS: usize = 4500;
 
-/// The largest number of operations of an unrolled field that could have this many cullable loops.
+/// The largest number of operations that stay unrolled where this many cullable loops could
+/// replace them.
 fn unrolled_limit(settings: &Settings, loops: usize) -> usize {
     if loops == 0 {
         return LIMIT_WITHOUT_LISTS;
@@ -39,8 +40,8 @@ fn unrolled_limit(settings: &Settings, loops: usize) -> usize {
 }
 
 impl LoopStrategy {
-    /// Decides if a field becomes loops. Also returns the number of operations up to which
-    /// [`LoopStrategy::Auto`] unrolls it. `lipschitz` is as for [`cullable_loops`].
+    /// Decides if a field becomes loops. Also returns the number of operations that loops must
+    /// replace at least for [`LoopStrategy::Auto`]. `lipschitz` is as for [`cullable_loops`].
     pub(crate) fn uses_loops(
         self,
         graph: &Graph,
@@ -58,7 +59,7 @@ impl LoopStrategy {
     }
 }
 
-/// Decides if loops are faster, and returns the number of operations up to which they are not.
+/// Decides if loops are faster, and returns the number of operations that they must replace.
 fn prefers_loops(
     graph: &Graph,
     distance: NodeId,
