@@ -49,7 +49,7 @@ fn two([x, y, z]: [f64; 3]) -> [f64; 2] {
 const PHI2: f64 = 2.618_033_988_749_895;
 
 /// All formulas. A `max` with a ball ends surfaces that go on for ever.
-pub static FORMULAS: [Formula; 46] = [
+pub static FORMULAS: [Formula; 47] = [
     formula("sphere as a polynomial", 5.0, "x * x + y * y + z * z - 1", |[x, y, z]| {
         x * x + y * y + z * z - 1.0
     }),
@@ -442,6 +442,19 @@ pub static FORMULAS: [Formula; 46] = [
             let threefold = 2.0 * y * (y * y - 3.0 * x * x) * (1.0 - z * z);
             let quartic = threefold + square(x * x + y * y) - (9.0 * z * z - 1.0) * (1.0 - z * z);
             quartic.max(ball([x, y, z], 2.0))
+        },
+    ),
+    // Nothing bounds its slope near the axis, and nothing its extent.
+    formula(
+        "knot of two strands",
+        5.0,
+        "let q = vec2(length(p.xz) - 1, y)
+         let r = spin(q, 1.5 * atan2(z, x))
+         length(vec2(abs(r.x) - 0.3, r.y)) - 0.15",
+        |[x, y, z]| {
+            let (u, (sin, cos)) = (x.hypot(z) - 1.0, (1.5 * z.atan2(x)).sin_cos());
+            let [s, t] = [u * cos - y * sin, u * sin + y * cos];
+            (s.abs() - 0.3).hypot(t) - 0.15
         },
     ),
     // Beyond a height of 1 the mitre is a line without an inside, of which a pixel may show some.

@@ -34,13 +34,18 @@ fn recent_slope(slope: f32, before: vec2f, t: f32, distance: f32) -> f32 {
 }
 
 // The step from a sample to the next, where `left` steps are left in the budget. It is at least the
-// tolerance, and the ray reaches its end within the budget.
+// tolerance. Once the rest of the budget is only enough for the longest steps, it is one of these
+// or longer, so that the ray reaches its end.
 fn sampling_step(ray: Ray, t: f32, distance: f32, slope: f32, left: u32) -> f32 {
     let growth = STEP_GROWTH / f32(ray.steps);
+    let start = START_FRACTION * ray.t_max;
     let pixel = 2.0 * footprint(ray, t);
-    let longest = max(growth * (t + START_FRACTION * ray.t_max), pixel);
+    let longest = max(growth * (t + start), pixel);
     let near = footprint_tolerance(ray, t);
     let step = clamp(APPROACH * distance / max(slope, 1e-20), near, max(longest, near));
-    let samples = max(left, BRACKET_STEPS + 1u) - BRACKET_STEPS;
-    return max(limited_step(step, max(distance, near)), (ray.t_max - t) / f32(samples));
+    // Steps that multiply t + start by exp(needed) reach the end within the budget.
+    let samples = f32(max(left, BRACKET_STEPS + 1u) - BRACKET_STEPS);
+    let needed = log((ray.t_max + start) / (t + start)) / samples;
+    let forced = select(0.0, (t + start) * (exp(needed) - 1.0), needed >= growth);
+    return max(limited_step(step, max(distance, near)), forced);
 }

@@ -129,21 +129,25 @@ impl<T: Real> Walk<T> {
         }
     }
 
-    /// The step from a sample to the next where nothing is proven. It is at least the tolerance,
-    /// and the ray reaches its end within the budget.
+    /// The step from a sample to the next where nothing is proven. It is at least the tolerance.
+    /// Once the rest of the budget is only enough for the longest steps, it is one of these or
+    /// longer, so that the ray reaches its end.
     fn sampling_step(&self, distance: T, limits: &Limits<T>) -> T {
         let growth = T::constant(STEP_GROWTH / f64::from(limits.steps));
-        let pixel = T::constant(2.0) * self.ray.footprint(self.t);
         let start = T::constant(START_FRACTION) * self.ray.t_max;
+        let pixel = T::constant(2.0) * self.ray.footprint(self.t);
         let near = limits.tolerance(&self.ray, self.t);
-        let longest = (growth * (self.t + start)).max(pixel).max(near);
+        let longest = (growth * (self.t + start)).max(pixel);
         let approach =
             (T::constant(APPROACH) * distance).div(self.steepness.max(T::constant(1e-20)));
-        let step = approach.clamp(near, longest);
+        let step = approach.clamp(near, longest.max(near));
         let step = if limits.records_clearance { step.min(distance.max(near)) } else { step };
         let budget = limits.method.step_budget_factor().saturating_mul(limits.steps);
         let left = budget.saturating_sub(self.evaluations);
+        // Steps that multiply t + start by exp(needed) reach the end within the budget.
         let samples = T::constant(f64::from(left.max(BRACKET_STEPS + 1) - BRACKET_STEPS));
-        step.max((self.ray.t_max - self.t).div(samples))
+        let needed = (self.ray.t_max + start).div(self.t + start).log().div(samples);
+        let forced = (self.t + start) * (needed.exp() - T::constant(1.0));
+        if needed >= growth { step.max(forced) } else { step }
     }
 }
