@@ -414,6 +414,50 @@ fn long_chains_are_cheap_and_do_not_overflow_the_stack() {
     assert!(lo[0] <= -1.0 && hi[0] >= 1000.0 && hi[0] < 2000.0, "{lo:?} {hi:?}");
 }
 
+#[test]
+fn a_long_chain_of_blends_swells_by_its_width_at_most() {
+    let (k, count) = (0.1, 60);
+    let mut scene = Scene::default();
+    let balls: Vec<ShapeId> = (0..count)
+        .map(|i| {
+            let ball = scene.ball(0.4);
+            scene.moved(ball, [0.01 * f64::from(i), 0.0, 0.0])
+        })
+        .collect();
+    let p = scene.p();
+    let samples: Vec<NodeId> = balls.iter().map(|&ball| scene.graph.sample(ball, p)).collect();
+    let g = &mut scene.graph;
+    let [width, zero, factor] = [k, 0.0, 0.25 / k].map(|value| g.number(value));
+    let blend = |a, b| {
+        let apart = g.sub(b, a);
+        let apart = g.abs(apart);
+        let h = g.sub(width, apart);
+        let h = g.max(h, zero);
+        let (square, least) = (g.mul(h, h), g.min(a, b));
+        let depth = g.mul(square, factor);
+        g.sub(least, depth)
+    };
+    let formula = samples.into_iter().reduce(blend).unwrap();
+    let union = scene.plain(formula, &balls);
+    let [lo, hi] = scene.corners(union, &[]);
+
+    // How far the surface is from the axis, by the same formula in numbers.
+    let field = |q: [f64; 2]| {
+        let ball = |i: i32| (q[0] - 0.01 * f64::from(i)).hypot(q[1]) - 0.4;
+        (1..count).map(ball).fold(ball(0), |a, b| {
+            let h = (k - (b - a).abs()).max(0.0);
+            a.min(b) - h * h * 0.25 / k
+        })
+    };
+    let middle = 0.005 * f64::from(count - 1);
+    let swollen = (0..1000).map(|i| 0.4 + 1e-4 * f64::from(i));
+    let radius = swollen.rev().find(|&y| field([middle, y]) <= 0.0).unwrap();
+    // Several blends swell by more than one, which adds k / 4.
+    assert!(radius > 0.4 + 0.5 * k, "{radius}");
+    assert!(hi[1] >= radius && hi[1] <= 0.4 + k + 1e-9, "{hi:?}, {radius}");
+    assert!(lo[0] >= -0.4 - k - 1e-9 && hi[0] <= 2.0 * middle + 0.4 + k + 1e-9, "{lo:?} {hi:?}");
+}
+
 /// A random tree; each step combines the latest shapes.
 fn tree(scene: &mut Scene, steps: &[(u8, [f64; 3])]) -> ShapeId {
     let mut stack = vec![scene.ball(0.6)];

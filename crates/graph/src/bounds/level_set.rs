@@ -163,12 +163,45 @@ impl Deriver<'_> {
 
     /// The box of a blend of finite width: where the blend is not above the limit, one of its
     /// operands exceeds the limit by at most the depth of the blend.
+    ///
+    /// In a chain f(f(f(a, b), c), d) these depths would add up. But where two values differ by
+    /// less than the width k, a blend of depth D is at least the greater one minus max(D, k), as
+    /// its correction falls at least linearly from D to 0; elsewhere it is the lesser one. So a
+    /// chain of any length is at least the least operand minus max(D, k).
     fn blended(&mut self, query: Query) -> Option<Zone> {
         let blend = blend_at(self.graph, &mut self.memo.blends, query.node)?;
         let depth = blend.depth(self.graph, query.node)?;
-        let limit = self.graph.end_sum(query.limit, depth);
-        let [a, b] = blend.values.map(|node| self.zone(Query { node, limit, ..query }));
-        Some(a.hull(self.graph, b).loose())
+        let chain = self.chain(query.node, blend.width, depth);
+        let most = self.graph.max(depth, blend.width);
+        let steps = chain.len() - 1;
+        if steps as f64 * self.range(depth).hi() <= self.range(most).hi() {
+            let limit = self.graph.end_sum(query.limit, depth);
+            let [a, b] = blend.values.map(|node| self.zone(Query { node, limit, ..query }));
+            return Some(a.hull(self.graph, b).loose());
+        }
+        let limit = self.graph.end_sum(query.limit, most);
+        let mut hull = Zone::nowhere(self.graph);
+        for node in chain {
+            let zone = self.zone(Query { node, limit, ..query });
+            hull = hull.hull(self.graph, zone);
+        }
+        Some(hull.loose())
+    }
+
+    /// The operands of a chain of blends of one width and depth, which ends with a blend: at least
+    /// its two operands.
+    fn chain(&mut self, end: NodeId, width: NodeId, depth: NodeId) -> Vec<NodeId> {
+        let (mut operands, mut at) = (Vec::new(), end);
+        while let Some(blend) = blend_at(self.graph, &mut self.memo.blends, at)
+            && blend.width == width
+            && blend.depth(self.graph, at) == Some(depth)
+        {
+            let [before, operand] = blend.ordered_values(self.graph, &mut self.memo.blends);
+            operands.push(operand);
+            at = before;
+        }
+        operands.push(at);
+        operands
     }
 
     /// True if the node does not depend on the formula's point.

@@ -4,7 +4,8 @@
 //! exceed 0. They keep per-frame values: the hull for `min`, the intersection for `max`, a limit
 //! that travels through sums, factors and signs, and boxes seen through affine maps of the point.
 //! For a blend of finite width, the rule is the hull of both operands, with the limit raised by the
-//! depth of the blend. An operator without a rule is shown to stay positive wherever its samples
+//! depth of the blend; for a long chain of blends, it is the hull of all operands, with the limit
+//! raised by the width. An operator without a rule is shown to stay positive wherever its samples
 //! are far enough from their surfaces. A leaf that states nothing is searched by interval
 //! exclusion: first half-spaces, then slabs that move the faces inwards. If a rule lost precision,
 //! the result is tightened by the same search over the whole formula.
