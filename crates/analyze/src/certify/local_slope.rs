@@ -31,7 +31,7 @@ const MAX_RATIO: f64 = 16.0;
 const SAMPLES: usize = 5;
 
 /// The lowest and highest coordinate of a box on each axis.
-type Region = [[f64; 2]; 3];
+pub(super) type Region = [[f64; 2]; 3];
 
 /// The slopes of a formula within a box.
 pub(crate) struct Slope {

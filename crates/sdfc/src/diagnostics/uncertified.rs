@@ -1,7 +1,8 @@
 //! The help about shapes without a Lipschitz constant (W0602): what to write, and where.
 
 use sdfc_analyze::{
-    Lipschitz, Reason, Report, SuggestedClauses, Uncertified, rounded_up, suggested_clauses,
+    Lipschitz, Reason, Report, SampledSlope, SuggestedClauses, Uncertified, rounded_up,
+    suggested_clauses,
 };
 use sdfc_graph::{Arg, Dim, ShapeId};
 use sdfc_lang::Elaborated;
@@ -88,23 +89,37 @@ fn child(
 fn clauses(elaborated: &Elaborated, shape: ShapeId) -> String {
     let scene = &elaborated.scene;
     let name = &scene.graph.shape(shape).definition;
-    match suggested_clauses(&scene.graph, shape, &scene.params) {
-        Some(SuggestedClauses { bounds: Some(reach), lipschitz: None }) => format!(
-            "write `bounds -{reach} .. {reach}` before the `=` of `{name}`, with limits that \
-             contain the shape"
-        ),
-        Some(SuggestedClauses { bounds: Some(reach), lipschitz: Some(constant) }) => format!(
-            "write `bounds -{reach} .. {reach} lipschitz {constant}` before the `=` of `{name}`, \
-             with limits that contain the shape; {FROM_SAMPLES}"
-        ),
-        Some(SuggestedClauses { bounds: None, lipschitz: Some(constant) }) => {
-            format!("write `lipschitz {constant}` before the `=` of `{name}`; {FROM_SAMPLES}")
-        }
-        Some(SuggestedClauses { bounds: None, lipschitz: None }) | None => format!(
+    let Some(SuggestedClauses { bounds, lipschitz }) =
+        suggested_clauses(&scene.graph, shape, &scene.params)
+    else {
+        return format!(
             "write `bounds` and `lipschitz` before the `=` of `{name}`: limits that contain the \
              shape, and the most by which the value changes when `p` moves by 1"
-        ),
-    }
+        );
+    };
+    let constant = match lipschitz {
+        Some(SampledSlope::Unlimited(at)) => {
+            // Adding 0 turns -0 into 0.
+            let at = at.map(|x| format!("{}", (x * 1e3).round() / 1e3 + 0.0)).join(", ");
+            return format!(
+                "no constant is right for `{name}`: its slope grows without limit near p = [{at}]; \
+                 if the picture is right, leave it so, or try `--march sphere`, which is faster"
+            );
+        }
+        Some(SampledSlope::Constant(constant)) => Some(constant),
+        None => None,
+    };
+    let bounds = bounds.map(|reach| format!("bounds -{reach} .. {reach}"));
+    let with_limits = bounds.as_ref().map(|_| ", with limits that contain the shape");
+    let from_samples = constant.map(|_| format!("; {FROM_SAMPLES}"));
+    let constant = constant.map(|constant| format!("lipschitz {constant}"));
+    let clauses: Vec<String> = bounds.into_iter().chain(constant).collect();
+    format!(
+        "write `{}` before the `=` of `{name}`{}{}",
+        clauses.join(" "),
+        with_limits.unwrap_or_default(),
+        from_samples.unwrap_or_default(),
+    )
 }
 
 /// The help for a constant of a child that holds only within the child's bounds.
