@@ -18,6 +18,7 @@ const ROWS: &[(&str, &str)] = &[
     ("ellipsoid", "spheroid"),
     ("circle", "disc disk"),
     ("rect", "rectangle square box2 box2d"),
+    ("regular_polygon(6, 0.5).extrude(1)", "prism"),
     ("regular_polygon", "ngon hexagon pentagon octagon octogon"),
     ("triangle", "equilateraltriangle"),
     ("isosceles_triangle", "triangleisosceles"),
@@ -34,11 +35,11 @@ const ROWS: &[(&str, &str)] = &[
     ("text", "label letters glyphs"),
     // Operators.
     ("union", "add merge combine join unite together group opu"),
-    ("difference", "subtract subtraction substraction cut minus ops"),
+    ("difference", "subtract subtraction substraction cut minus hole ops"),
     ("intersection", "intersect common opi"),
     (
         "union(a, b, blend: smooth(0.1))",
-        "smin smoothunion smoothmin unionsmooth blob metaballs polysmin opblend opsmooth",
+        "smin smoothunion smoothmin unionsmooth blob blend metaballs polysmin opblend opsmooth",
     ),
     (
         "difference(a, b, blend: smooth(0.1))",
@@ -49,13 +50,26 @@ const ROWS: &[(&str, &str)] = &[
     ("union(a, b, blend: chamfer(0.1))", "unionchamfer chamferunion fopunionchamfer"),
     ("union(a, b, blend: stairs(0.1, 4))", "unionstairs stairsunion fopunionstairs"),
     ("translate", "move shift moved optx"),
-    ("rotate", "rotatex rotatey rotatez rotation"),
+    ("rotate", "rotation"),
+    ("rotate(x: 30deg)", "rotatex"),
+    ("rotate(y: 30deg)", "rotatey"),
+    ("rotate(z: 30deg)", "rotatez"),
+    ("spin", "rot rot2 rot2d rotate2d"),
     ("scale", "resize zoom"),
-    ("mirror", "reflect flip symmetric symmetry symx symy symz symxy symxz symyz"),
+    ("reflect", "flip mirrorimage mirrored"),
+    ("mirror", "symmetric symmetry symx symy symz symxy symxz symyz"),
     ("repeat", "tile mod1 mod2 mod3 pmod1 pmod2 pmod3 domainrepetition repetition rep infarray"),
-    ("limited_repeat", "array replim repeatlimited replimited limitedrepetition gridcopies"),
-    ("polar_repeat", "radial modpolar pmodpolar circulararray polararray repeatpolar rotcopies"),
-    ("extrude", "linearextrude extrusion prism"),
+    (
+        "limited_repeat",
+        "array replim repeatlimited replimited limitedrepetition gridcopies lineararray \
+         gridarray linearpattern rectangularpattern",
+    ),
+    (
+        "polar_repeat",
+        "radial modpolar pmodpolar circulararray polararray circularpattern \
+         polarpattern repeatpolar rotcopies",
+    ),
+    ("extrude", "linearextrude extrusion"),
     ("revolve", "rotateextrude revolution lathe"),
     ("shell", "hollow annular"),
     ("round", "rounded rounding"),
@@ -106,6 +120,7 @@ const ROWS: &[(&str, &str)] = &[
     ("emission", "glow emissive"),
     ("metallic", "metal metalness"),
     ("checker", "checkerboard chequer"),
+    ("ramp", "lineargradient radialgradient colorramp colorgradient gradientcolor"),
     // Types.
     ("number", "float double real f32 scalar"),
     ("bool", "boolean"),
@@ -131,7 +146,7 @@ const ROWS: &[(&str, &str)] = &[
     ("#ffd700", "gold"),
 ];
 
-/// Operations of other tools that have no equivalent: the name, the message, and the expression
+/// Operations of other tools that have no equivalent: their names, the message, and the expression
 /// that comes nearest.
 const ABSENT: &[(&str, &str, &str)] = &[
     (
@@ -147,9 +162,15 @@ const ABSENT: &[(&str, &str, &str)] = &[
     ),
     (
         "bevel",
-        "there is no bevel of a shape's edges: `a.round(0.1)` rounds them, `intersection(a, b, \
-         blend: chamfer(0.1))` cuts the edges between two shapes",
+        "there is no bevel of a shape's edges: `rounded_box` has round ones, `a.round(0.1)` rounds \
+         those of any shape and makes it 0.1 larger on each side, `intersection(a, b, blend: \
+         chamfer(0.1))` cuts the edges between two shapes",
         "a.round(0.1)",
+    ),
+    (
+        "opacity alpha transparent transparency",
+        "solids are never transparent; the colour of a region may be, as in `#457b9d80`",
+        "#457b9d80",
     ),
     (
         "gear",
@@ -168,7 +189,7 @@ const ABSENT: &[(&str, &str, &str)] = &[
 /// A parameter, and the names that other tools have for such a parameter, spelt like those of
 /// [`ROWS`].
 const PARAMETERS: &[(&str, &str)] = &[
-    ("r", "radius rad diameter size"),
+    ("r", "radius rad d diameter size"),
     ("r1", "ra radius1 rbottom"),
     ("r2", "rb radius2 rtop"),
     ("h", "height length tall"),
@@ -207,7 +228,8 @@ pub fn parameter<'n>(name: &str, names: &[&'n str]) -> Option<&'n str> {
 /// comes nearest.
 pub fn absent(name: &str) -> Option<[&'static str; 2]> {
     let name = plain(name);
-    let (_, message, nearest) = ABSENT.iter().find(|(other, ..)| *other == name)?;
+    let (_, message, nearest) =
+        ABSENT.iter().find(|(others, ..)| others.split(' ').any(|other| other == name))?;
     Some([message, nearest])
 }
 

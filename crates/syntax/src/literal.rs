@@ -26,6 +26,12 @@ pub(crate) fn number(text: &str, span: Span) -> Checked<ExprKind> {
             let problem = wrong("exponents are written with a small `e`".to_owned());
             (None, Some(problem.help(&help).fix(help, span, fixed)))
         }
+        "mm" | "cm" | "m" | "inch" | "in" | "px" | "em" => {
+            let help = format!("lengths have no unit: {digits} may be millimetres or metres");
+            let fix = format!("write {digits}");
+            let problem = wrong(format!("`{suffix}` is not a unit"));
+            (None, Some(problem.help(help).fix(fix, span, digits.to_owned())))
+        }
         _ => {
             let problem = wrong(format!("`{suffix}` is not a unit"))
                 .help("the units are deg, turn and rad; lengths have none")

@@ -25,6 +25,19 @@ impl<'a> Checker<'a> {
         if !makes_shape {
             return found;
         }
+        match (callee, name) {
+            ("extrude", "twist") => {
+                return found.help(
+                    "`extrude` runs along z, and `twist` turns about y by an angle for each unit: \
+                     extrude(...).rotate(x: -90deg).twist(2deg).rotate(x: 90deg)",
+                );
+            }
+            ("cylinder", "r1" | "r2") => return found.help("`capped_cone` has two radii"),
+            ("extrude", "scale" | "taper") => {
+                return found.help("a loft joins two sections: loft(a, a.scale(0.6), h: ...)");
+            }
+            _ => {}
+        }
         if self.library_decls(name).iter().any(|decl| self.takes_shape(*decl)) {
             return found.help(format!("call `{name}` on the shape: {callee}(...).{name}(...)"));
         }
@@ -63,7 +76,8 @@ impl<'a> Checker<'a> {
                 "a blend",
                 [
                     "between two shapes, write union(a, b, blend: ...)",
-                    "the edges of one shape are rounded by a.round(0.1)",
+                    "`rounded_box` has round edges; a.round(0.1) rounds the edges of any shape, and \
+                     makes it 0.1 larger on each side",
                 ]
                 .as_slice(),
             ),

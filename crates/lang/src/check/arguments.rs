@@ -118,7 +118,9 @@ impl<'a> Checker<'a> {
             let names: Vec<&str> = parameters.iter().map(|parameter| parameter.name).collect();
             let near = synonyms::parameter(&name.text, &names)
                 .or_else(|| nearest(&name.text, names.into_iter()));
+            let is_diameter = matches!(&name.text[..], "d" | "diameter") && near == Some("r");
             let found = match near {
+                Some(_) if is_diameter => found.help("`r` is the radius, half of the diameter"),
                 Some(near) => ask(near).add_to(found),
                 None => self.elsewhere(
                     callee.name,

@@ -152,7 +152,11 @@ impl<'a> Checker<'a> {
             };
             let are = if given.len() == 1 { "is" } else { "are" };
             let message = format!("`{}` takes {wants}; {} {are} given", callee.name, given.len());
-            self.report(Diagnostic::error(Code::ARGUMENTS, callee.at, message));
+            let found = Diagnostic::error(Code::ARGUMENTS, callee.at, message);
+            self.report(match (callee.name, given.len()) {
+                ("atan", 2) => found.help("of two numbers, write atan2(y, x)"),
+                _ => found,
+            });
             self.give_up(given, callee.span);
             return None;
         }

@@ -160,7 +160,8 @@ impl<'a> Checker<'a> {
         let message = format!("`{name}` is a setting, not a value");
         self.report(
             Diagnostic::error(Code::MISPLACED_SETTING, at, message)
-                .help("write it on a line of its own, at the top level of the scene"),
+                .help("write it on a line of its own, at the top level of the scene")
+                .help("a loop makes no settings: write each of them on a line of its own"),
         );
     }
 

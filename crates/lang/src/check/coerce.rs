@@ -277,6 +277,14 @@ fn ways_out(value: &Expr, want: &Type, role: Role) -> Vec<String> {
         {
             vec![format!("to call the field `{callee}`, write (a.{callee})(...)")]
         }
+        (_, Type::Number, Type::Shape(_) | Type::Vec(_), None)
+            if matches!(value.kind, ExprKind::Local(_)) =>
+        {
+            let ty = types::show(want);
+            vec![format!(
+                "a parameter without a type is a number: write its type, as in fn f(a: {ty}) = ..."
+            )]
+        }
         (Role::Argument(callee, _), _, Type::Shape(_), None) => {
             vec![format!("pass the shape first: {callee}(a, ...) or a.{callee}(...)")]
         }
@@ -291,7 +299,7 @@ fn ways_out(value: &Expr, want: &Type, role: Role) -> Vec<String> {
 /// A suggestion to convert one type to another.
 fn way_out(have: &Type, want: &Type) -> Option<String> {
     match (have, want) {
-        (Type::Number | Type::Angle, Type::Int) => Some("round it to a whole number: round(x) or floor(x)".into()),
+        (Type::Number | Type::Angle, Type::Int) => Some("round it to a whole number: round(x) or floor(x); a param that counts has a type: param n: int = 10".into()),
         (Type::Vec(_) | Type::List(_), Type::Angle) => Some(
             "give each axis by name: rotate(x: 10deg, y: 45deg)".into(),
         ),

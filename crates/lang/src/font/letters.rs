@@ -54,6 +54,12 @@ impl<'r> Fonts<'r> {
         if name == SANS_NAME {
             return Font::new(SANS, 0).ok_or_else(|| "the built-in font is damaged".to_owned());
         }
+        if !name.contains('.') {
+            return Err(format!(
+                "there is no built-in font `{name}`: the only one is \"{SANS_NAME}\"; others are \
+                 files, such as \"fonts/bold.ttf\""
+            ));
+        }
         let path = import::locate("", name)?;
         let bytes = self
             .resolver
@@ -257,6 +263,7 @@ mod tests {
         let fonts = Fonts::new(&NoFiles);
         let why = |text: &str, font: &str| fonts.curves(text, font, LEFT).err().unwrap_or_default();
         assert!(why("a\u{2603}", "sans").contains("U+2603"));
+        assert!(why("a", "bold").contains("no built-in font"));
         assert!(why("a", "missing.ttf").contains("missing.ttf"));
         assert!(why("a", "../up.ttf").contains("outside the folder"));
         assert!(why(&"ø".repeat(500), "sans").contains("4096"));

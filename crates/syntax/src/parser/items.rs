@@ -216,7 +216,8 @@ impl Parser<'_> {
         match self.body_follows() {
             Ok(()) if self.at_new_declaration() || self.kind() == TokenKind::Eof => {
                 let what = format!("the formula of `{}` after `=`", name.text);
-                let _reported: Parsed<()> = self.expected(&what);
+                let help = "put a formula of several lines in braces: = { ... }";
+                let _reported: Parsed<()> = self.expected_with(&what, &[help]);
                 Ok(Expr { kind: ExprKind::Error, span: self.since(start) })
             }
             Ok(()) => self.expr_or_skip(&[TokenKind::Semicolon]),

@@ -119,6 +119,15 @@ impl Parser<'_> {
         match (previous.kind, self.kind()) {
             (TokenKind::Name, TokenKind::Name) => {
                 let word = self.slice(self.span());
+                if text == "return" {
+                    return Some("the last line is the value: leave out `return`".to_owned());
+                }
+                if matches!(text, "float" | "vec2" | "vec3" | "vec4" | "int" | "bool" | "void") {
+                    return Some(format!(
+                        "a type stands behind its name: `let {word} = ...`, `fn {word}(p: vec3) = \
+                         ...`"
+                    ));
+                }
                 if matches!(text, "module" | "function" | "def" | "func") {
                     return Some(format!(
                         "declare a function with `fn {word}(x) = ...`, and a shape with `solid \
