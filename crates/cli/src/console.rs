@@ -80,13 +80,17 @@ impl Console {
 
     /// A progress bar for work that takes more than half a second, on a terminal and without `-q`.
     /// Until the first report, as while a driver compiles a shader, it shows the time so far.
+    /// Elsewhere, as in a log, it is a line from time to time, so that work does not look like a
+    /// hang.
     pub fn progress(&self, what: &str) -> Progress {
         let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden());
         let style = ProgressStyle::with_template("{prefix}: preparing, {elapsed} so far");
         bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
         bar.set_prefix(what.to_owned());
-        if !self.quiet && stderr().is_terminal() {
-            Progress::show_later(bar.clone());
+        match (self.quiet, stderr().is_terminal()) {
+            (true, _) => {}
+            (false, true) => Progress::show_later(bar.clone()),
+            (false, false) => Progress::log_later(bar.clone()),
         }
         Progress { bar, reported: AtomicBool::new(false) }
     }
@@ -103,7 +107,7 @@ fn colored(choice: ColorChoice, stream: &impl IsTerminal) -> bool {
     }
 }
 
-/// A progress bar that appears after [`Self::DELAY`].
+/// A progress bar that appears after [`Self::DELAY`], or lines in a log.
 pub struct Progress {
     bar: ProgressBar,
     reported: AtomicBool,
@@ -113,6 +117,10 @@ impl Progress {
     const DELAY: Duration = Duration::from_millis(500);
     /// How often the time is drawn.
     const TICK: Duration = Duration::from_millis(250);
+
+    /// When a log has its first line, and the longest time between two lines. It doubles from line
+    /// to line.
+    const LOG_TIMES: [Duration; 2] = [Duration::from_secs(10), Duration::from_secs(80)];
 
     /// Draws the bar from a thread, because the work may not report for minutes.
     fn show_later(bar: ProgressBar) {
@@ -125,6 +133,31 @@ impl Progress {
         };
         // Without a thread there is no bar.
         let _ = thread::Builder::new().name("progress".to_owned()).spawn(show);
+    }
+
+    /// Writes lines from a thread until the work ends.
+    fn log_later(bar: ProgressBar) {
+        let log = move || {
+            let [mut wait, longest] = Self::LOG_TIMES;
+            loop {
+                thread::sleep(wait);
+                if bar.is_finished() {
+                    return;
+                }
+                let (what, seconds) = (bar.prefix(), bar.elapsed().as_secs());
+                let line = match bar.length() {
+                    Some(total) => {
+                        let percent = 100 * bar.position() / total.max(1);
+                        format!("{what}: {percent} % after {seconds} s\n")
+                    }
+                    None => format!("{what}: preparing, {seconds} s so far\n"),
+                };
+                let _ = stderr().write_all(line.as_bytes());
+                wait = (2 * wait).min(longest);
+            }
+        };
+        // Without a thread there are no lines.
+        let _ = thread::Builder::new().name("progress".to_owned()).spawn(log);
     }
 
     /// Shows that `done` of `total` units of work are done.

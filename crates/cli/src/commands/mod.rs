@@ -26,7 +26,7 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 use sdfc::{
-    CompileWithError, Compiler, Diagnostics, Error, FrameValues, MeshError, MeshOptions,
+    CompileWithError, Compiler, Diagnostics, Error, FrameValues, MeshError, MeshOptions, MeshPhase,
     MeshProgress, MeshSize, Scene,
 };
 use sdfc_measure::MeasureError;
@@ -133,7 +133,13 @@ fn mesh_work<T>(
 ) -> Result<T, Failure> {
     let interrupt = Interrupt::watch("stopped; nothing was written", console);
     let progress = console.progress(name);
+    // A proof that leaves boxes undecided is followed by another pass, with smaller boxes there.
+    let (mut phase, mut pass) = (None, 1);
     let done = work(&mut |part| {
+        if phase.replace(part.phase) != Some(part.phase) {
+            progress.rename(&format!("{name}, {}", step(part.phase, pass)));
+            pass += u32::from(part.phase == MeshPhase::Proving);
+        }
         progress.set(part.done, part.total);
         interrupt.flow()
     });
@@ -144,6 +150,17 @@ fn mesh_work<T>(
         }
         lowering(&error, console)
     })
+}
+
+/// A step of a pass, as the progress shows it.
+fn step(phase: MeshPhase, pass: u32) -> String {
+    let step = match phase {
+        MeshPhase::Refining => "dividing boxes",
+        MeshPhase::Placing => "placing points",
+        MeshPhase::Proving => "proving the error",
+        MeshPhase::Measuring => "adding up",
+    };
+    if pass == 1 { step.to_owned() } else { format!("pass {pass}, {step}") }
 }
 
 /// Returns the compiler that all commands use. It tests the clauses of the scene's own shapes, so
