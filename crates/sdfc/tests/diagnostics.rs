@@ -82,9 +82,43 @@ fn helps(text: &str) -> Vec<String> {
     about.flat_map(|diagnostic| diagnostic.help.clone()).collect()
 }
 
+/// Returns a scene with the clauses of its only help: its first code, before the first `=`.
+fn with_help(text: &str) -> String {
+    let helps = helps(text);
+    let [help] = &helps[..] else { panic!("{helps:?}\n{text}") };
+    let clauses = help.split("write `").nth(1).and_then(|rest| rest.split('`').next());
+    let Some(clauses) = clauses else { panic!("no clauses in {help}\n{text}") };
+    text.replacen('=', &format!("{clauses}\n  ="), 1)
+}
+
+#[test]
+fn samples_do_not_refute_the_suggested_clauses() {
+    let texts = [
+        // Without an end.
+        "solid pond() = p.y - 0.03 * sin(30 * length(p.xz)) * exp(-6 * abs(length(p.xz) - 1))\n\
+         pond()",
+        "solid planet() = length(p) - 1 - 0.15 * fbm(normalize(p) * 3)\nplanet()",
+        // A gear of radius 22, of involute teeth.
+        "region gear() = {\n  let base = 20 * cos(20deg)\n  let r = length(p)\n  \
+         let t = abs((atan2(p.y, p.x) + 9deg) % 18deg - 9deg)\n  \
+         let a = acos(base / max(r, base))\n  \
+         let half = 4.5deg + (tan(20deg) - 20deg) - (tan(a) - a)\n  \
+         min(max(r * (t - half), r - 22), r - 17.5)\n}\ngear().extrude(8)",
+    ];
+    for text in texts {
+        let fixed = with_help(text);
+        assert!(codes(&fixed).iter().all(|(code, _)| *code != "E0502"), "{fixed}");
+    }
+    // The slope grows without limit near the axis.
+    let knot = "solid knot() = {\n  let q = vec2(length(p.xz) - 1, p.y)\n  \
+                let r = spin(q, 1.5 * atan2(p.z, p.x))\n  \
+                length(vec2(abs(r.x) - 0.3, r.y)) - 0.15\n}\nknot()";
+    let found = helps(knot);
+    assert!(matches!(&found[..], [help] if help.contains("grows without limit")), "{found:?}");
+}
+
 #[test]
 fn writing_the_help_of_an_uncertified_shape_certifies_it() {
-    // The clause to write is the help's first code, and goes before the first `=`.
     let own = [
         "solid s() = p.y - p.x * p.x * p.z\ns() & box(2)",
         "solid s()\n  bounds -1..1\n  = {\n    let d = dot(p, [1, 2, 3])\n    \
@@ -96,13 +130,9 @@ fn writing_the_help_of_an_uncertified_shape_certifies_it() {
         "solid s() = if p.x > 0.3 { length(p) - 1 } else { length(p) - 1.5 }\ns()",
     ];
     for text in own {
-        let helps = helps(text);
-        let [help] = &helps[..] else { panic!("{helps:?}\n{text}") };
-        let line = help.split("write `").nth(1).and_then(|rest| rest.split('`').next());
-        let Some(line) = line else { panic!("no line in {help}\n{text}") };
-        let fixed = text.replacen('=', &format!("{line}\n  ="), 1);
+        let fixed = with_help(text);
         let left: Vec<_> = codes(&fixed).into_iter().filter(|(code, _)| *code != "E0502").collect();
-        assert_eq!(left, [], "{fixed}\n{help}");
+        assert_eq!(left, [], "{fixed}");
     }
     // Such bounds are enough for a sum with a box.
     assert_eq!(codes("solid s() bounds -1..1 = box(1)(p) - 0.05 * p.x * p.y\ns()"), []);

@@ -32,10 +32,10 @@ impl<'a> Checker<'a> {
                      extrude(...).rotate(x: -90deg).twist(2deg).rotate(x: 90deg)",
                 );
             }
-            ("cylinder", "r1" | "r2") => return found.help("`capped_cone` has two radii"),
             ("extrude", "scale" | "taper") => {
                 return found.help("a loft joins two sections: loft(a, a.scale(0.6), h: ...)");
             }
+            ("cylinder", "r1" | "r2") => return found.help("`capped_cone` has two radii"),
             _ => {}
         }
         if self.library_decls(name).iter().any(|decl| self.takes_shape(*decl)) {
