@@ -16,7 +16,7 @@
 //!
 //! The modules are named after the stages: `certify` derives promises, constants and the
 //! conservative field; `analytic` intersects rays without marching; `reroll` makes loops; `refute`
-//! tests clauses; `planar` makes the pixels of scenes of regions, which have no rays; `prepare`
+//! tests clauses and finds films; `planar` makes the pixels of scenes of regions, which have no rays; `prepare`
 //! runs the passes in order.
 //!
 //! # Limits
@@ -51,6 +51,7 @@ pub use prepare::{Prepared, prepare, prepare_with};
 pub use refute::claims::{LipschitzViolation, refute_lipschitz};
 pub use refute::clauses::{Clause, Violation, refute};
 pub use refute::copies::{CopiesViolation, refute_copies};
+pub use refute::films::{Film, films};
 pub use refute::frames::ParamValues;
 pub use refute::rays::{RayViolation, refute_intersect};
 pub use report::{Lipschitz, Report, ShapeReport};

@@ -273,6 +273,14 @@ codes! {
          255 or write hexadecimal digits: `rgb(1, 0.5, 0)` is `#ff8000`. Light that is brighter \
          than white, for `emission` or a sky, is written with `linear_rgb`."
         "divide by 255, or write `linear_rgb` for amounts of light";
+    FILM "W0609" "Film without thickness"
+        "A cut that ends exactly in the face that it cuts leaves a film: the distance is 0 there \
+         and positive on both sides. Rays hit it or miss it by their rounding errors, so it looks \
+         like dust, and a mesh cannot be proven there. Let the shape that cuts reach beyond the \
+         face. Two pockets that touch leave such a film between them, and solids that touch leave \
+         one when they are intersected: let them overlap. Films that are small beside the parts \
+         that make them are not found."
+        "let the shape that cuts reach beyond the face";
 }
 
 #[cfg(test)]

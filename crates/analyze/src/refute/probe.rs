@@ -14,7 +14,16 @@ const SURFACE: usize = 200;
 /// Bisections between points of opposite sign, and iterations of the search for the nearest point
 /// of a surface.
 const BISECTIONS: usize = 50;
+/// Number of lines that are searched for a film, of points on each, and of steps of the search for
+/// the least value between two points.
+const LINES: usize = 48;
+const LINE_POINTS: usize = 24;
+const NARROWINGS: usize = 48;
 const ITERATIONS: usize = 300;
+/// Fraction of the region's size by which the lines reach beyond it.
+const BEYOND: f64 = 0.2;
+/// The least value on a film, as a fraction of the values beside it.
+const FILM: f64 = 1e-6;
 /// Half the sampled interval on an axis without bounds.
 const REACH: f64 = 2.0;
 /// Relative tolerances of constants and of distances. A promise that fails by less is not reported.
@@ -201,6 +210,17 @@ impl Probe {
         self.at(foot).abs() <= INEXACT * field.abs() + SLACK * self.scale
     }
 
+    /// A point of a film: a minimum of the field along a line that is 0 and not negative.
+    pub(super) fn film(&mut self) -> Option<Vec<f64>> {
+        let per_line = LINE_POINTS + NARROWINGS;
+        let count = self.effort.of(LINES * per_line, &self.tape) / per_line;
+        let at = (0..count).find_map(|_| {
+            let [from, to] = [self.point(BEYOND), self.point(BEYOND)];
+            film_between(&mut self.field(), from, to)
+        })?;
+        Some(self.lanes(at))
+    }
+
     /// Points of the surface, by bisection between points of opposite sign.
     fn surface(&mut self) -> Vec<Point> {
         // Each point of the surface takes a bisection.
@@ -254,6 +274,50 @@ fn crossing(field: &mut Evaluator<'_, f64>, mut from: Point, mut to: Point) -> P
         *end = middle;
     }
     from
+}
+
+/// A point between two points at which the field is 0 and a minimum along the line.
+fn film_between(field: &mut Evaluator<'_, f64>, from: Point, to: Point) -> Option<Point> {
+    let step = 1.0 / (LINE_POINTS - 1) as f64;
+    let mut at = |t: f64| field.scalar(mix(from, to, t));
+    let values: Vec<f64> = (0..LINE_POINTS).map(|i| at(i as f64 * step)).collect();
+    (1..LINE_POINTS - 1).find_map(|i| {
+        let [before, least, after] = [values[i - 1], values[i], values[i + 1]];
+        if !(least > 0.0 && least <= before && least < after) {
+            return None;
+        }
+        // Where two faces coincide, rounding errors may give a tiny negative value.
+        let rounding = FILM * before.min(after);
+        let t = least_between(&mut at, [i - 1, i + 1].map(|i| i as f64 * step), -rounding)?;
+        (at(t) <= rounding).then(|| mix(from, to, t))
+    })
+}
+
+/// Where the field is least between two parameters of a line, by golden-section search. `None` if
+/// it is below the limit somewhere on the way.
+fn least_between(
+    at: &mut impl FnMut(f64) -> f64,
+    [mut lo, mut hi]: [f64; 2],
+    limit: f64,
+) -> Option<f64> {
+    const GOLDEN: f64 = 0.618_033_988_749_894_9;
+    let [mut a, mut b] = [hi - GOLDEN * (hi - lo), lo + GOLDEN * (hi - lo)];
+    let [mut at_a, mut at_b] = [at(a), at(b)];
+    for _ in 0..NARROWINGS {
+        if at_a < limit || at_b < limit {
+            return None;
+        }
+        if at_a < at_b {
+            (hi, b, at_b) = (b, a, at_a);
+            a = hi - GOLDEN * (hi - lo);
+            at_a = at(a);
+        } else {
+            (lo, a, at_a) = (a, b, at_b);
+            b = lo + GOLDEN * (hi - lo);
+            at_b = at(b);
+        }
+    }
+    Some(0.5 * (lo + hi))
 }
 
 fn mix(a: Point, b: Point, t: f64) -> Point {

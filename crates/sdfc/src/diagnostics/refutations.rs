@@ -153,7 +153,8 @@ fn refutation(declared: &Declared, refuted: &Violation) -> Option<Diagnostic> {
     }
 }
 
-fn point(lanes: &[f64]) -> String {
+/// Returns a point as scenes write it, with four significant digits.
+pub(super) fn point(lanes: &[f64]) -> String {
     let lanes: Vec<String> = lanes.iter().map(|&lane| number(lane)).collect();
     format!("[{}]", lanes.join(", "))
 }

@@ -1,16 +1,20 @@
 //! Warnings about what the analyses could not prove, at the calls in the scene.
 
 use rustc_hash::FxHashSet;
-use sdfc_analyze::{CopiesObstacle, Report, copies_obstacle};
+use sdfc_analyze::{CopiesObstacle, Report, copies_obstacle, films};
 use sdfc_diagnostics::{Code, Diagnostic, Sources};
 use sdfc_graph::{Dim, ShapeId};
 use sdfc_lang::{Declared, Elaborated, Site};
 
 use super::origins::Origins;
+use super::refutations::point;
 use super::uncertified;
 
+/// About how many scalar operations the search for films may take: some milliseconds.
+const FILM_OPERATIONS: u64 = 1 << 22;
+
 /// Returns the warnings W0601 (operators that need a distance and get a bound), W0602 (shapes
-/// without a Lipschitz constant) and W0606 (useless clauses).
+/// without a Lipschitz constant), W0606 (useless clauses) and W0609 (films).
 pub(crate) fn warnings(
     elaborated: &Elaborated,
     report: &Report,
@@ -45,6 +49,20 @@ pub(crate) fn warnings(
         }
     }
     warnings.extend(elaborated.declared.iter().filter_map(|shape| idle(elaborated, shape)));
+    for film in films(&elaborated.scene, FILM_OPERATIONS) {
+        let Some(site) = origins.nearest_call(film.shape) else { continue };
+        if seen.insert((Code::FILM, site.span)) {
+            let message = format!(
+                "`{}` leaves a film without thickness, for example at {}: two surfaces coincide \
+                 there",
+                site.name,
+                point(&film.at)
+            );
+            let help = "let the shape that cuts reach beyond the face, or let shapes that touch \
+                        overlap";
+            warnings.push(Diagnostic::warning(Code::FILM, site.span, message).help(help));
+        }
+    }
     warnings
 }
 
