@@ -227,9 +227,8 @@ pub fn devices(scene: &Scene) -> Result<Difference, Disagreement> {
         return planar_difference(&gpu, &cpu, "GPU and CPU in f32");
     }
     let Depths { double, limit, view, .. } = Depths::of(scene)?;
-    let without_films = |other, color| {
-        without_cause(scene, &view, [&gpu, other], (limit, color), is_film)
-    };
+    let without_films =
+        |other, color| without_cause(scene, &view, [&gpu, other], (limit, color), is_film);
     let (cpu, double) = (without_films(&cpu, Some(COLOR))?, without_films(&double, None)?);
     let found = agree(&gpu, &cpu, "GPU and CPU in f32", limit, Some(COLOR))?;
     agree(&gpu, &double, "GPU and CPU in f64", limit, None)?;

@@ -9,10 +9,15 @@
 
 use rustc_hash::FxHashSet;
 use sdfc_graph::eval::{FrameValues, evaluate_frame};
-use sdfc_graph::{Bounds, Graph, NodeId, Param, Scene, ShapeId};
+use sdfc_graph::{Binary, Bounds, Graph, Node, NodeId, Scene, ShapeId, reachable_where};
 
 use crate::refute::frames::axes;
 use crate::refute::probe::{Effort, Probe};
+
+/// Number of lines for each child of a shape.
+const LINES: usize = 48;
+/// Evaluations that take about as long as making a tape.
+const PREPARATION: u64 = 50;
 
 /// A shape with a film, although none of its children has one.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,67 +29,77 @@ pub struct Film {
 }
 
 /// Searches the scene's combinations of shapes for films, with the params at their defaults. It
-/// takes about `operations` scalar operations at most. Shapes whose arguments depend on a point, and
-/// fields that do not expand, are skipped. Films that are small beside the bounds of all children
-/// are missed.
+/// takes about `operations` scalar operations at most, for one shape after the other, children
+/// first. Shapes whose arguments depend on a point, and fields that do not expand, are skipped.
+/// Films that are small beside the bounds of all children are missed.
 pub fn films(scene: &Scene, operations: u64) -> Vec<Film> {
-    let graph = &scene.graph;
-    let drawn = descendants(graph, scene.root.as_slice());
-    let is_combined = |&&id: &&ShapeId| {
-        let shape = graph.shape(id);
-        let is_alike = |&child: &ShapeId| graph.shape(child).dim == shape.dim;
-        shape.level == 0 && shape.children.len() > 1 && shape.children.iter().all(is_alike)
-    };
-    let mut combined: Vec<ShapeId> = drawn.iter().filter(is_combined).copied().collect();
-    // Children come before their parents.
-    combined.sort_unstable();
-    let children: usize = combined.iter().map(|&id| graph.shape(id).children.len()).sum();
-    let effort = Effort(operations / children.max(1) as u64);
+    let Some(root) = scene.root else { return Vec::new() };
+    let mut extract = scene.graph.extract(&[], &[root]);
+    let mut bounds = Bounds::new(&scene.params);
     let frame = FrameValues::defaults(&scene.params);
-    let mut found: Vec<Film> = Vec::new();
-    for shape in combined {
-        let below = descendants(graph, &[shape]);
-        if found.iter().any(|film| below.contains(&film.shape)) {
-            continue;
-        }
-        if let Some(at) = film(graph, &scene.params, shape, &frame, effort) {
+    let mut left = operations;
+    let mut marred = FxHashSet::default();
+    let mut found = Vec::new();
+    for shape in scene.graph.shape_ids() {
+        // Only shapes that are drawn are in the extract.
+        let Some(copy) = extract.shape(shape) else { continue };
+        let children = &scene.graph.shape(shape).children;
+        if children.iter().any(|child| marred.contains(child)) {
+            marred.insert(shape);
+        } else if left > 0
+            && may_leave_film(&scene.graph, shape)
+            && let Some(at) = film(&mut extract.graph, &mut bounds, copy, &frame, &mut left)
+        {
+            marred.insert(shape);
             found.push(Film { shape, at });
         }
     }
     found
 }
 
-/// The shapes and all that they are made of.
-fn descendants(graph: &Graph, shapes: &[ShapeId]) -> FxHashSet<ShapeId> {
-    let mut pending = shapes.to_vec();
-    let mut found = FxHashSet::default();
-    while let Some(shape) = pending.pop() {
-        if found.insert(shape) {
-            pending.extend(&graph.shape(shape).children);
-        }
-    }
-    found
+/// True if the shape combines shapes of its dimension in another way than by their least distance,
+/// which leaves no new film.
+fn may_leave_film(graph: &Graph, id: ShapeId) -> bool {
+    let shape = graph.shape(id);
+    let is_alike = |&child: &ShapeId| graph.shape(child).dim == shape.dim;
+    shape.level == 0
+        && shape.children.len() > 1
+        && shape.children.iter().all(is_alike)
+        && !is_union(graph, shape.formula)
+}
+
+fn is_union(graph: &Graph, formula: NodeId) -> bool {
+    let is_least = |id| matches!(graph.node(id), Node::Binary(Binary::Min, ..));
+    let is_sample = |id| matches!(graph.node(id), Node::Sample(..));
+    let parts = reachable_where(graph, &[formula], is_least);
+    parts.into_iter().all(|id| is_least(id) || is_sample(id))
 }
 
 /// A point of a film of the shape. Lines are drawn where the bounds of the shape and of one child
 /// overlap, so that the face of a small cut is not missed.
 fn film(
-    graph: &Graph,
-    params: &[Param],
+    graph: &mut Graph,
+    bounds: &mut Bounds,
     shape: ShapeId,
     frame: &FrameValues,
-    effort: Effort,
+    left: &mut u64,
 ) -> Option<Vec<f64>> {
-    let mut extract = graph.extract(&[], &[shape]);
-    let shape = extract.shape(shape)?;
-    let graph = &mut extract.graph;
-    let mut bounds = Bounds::new(params);
     let whole = bounds.of(graph, shape);
     let width = axes(graph.shape(shape).dim);
-    graph.shape(shape).children.clone().into_iter().find_map(|child| {
-        let part = bounds.of(graph, child);
-        let window = overlap(graph, whole, part, frame, width)?;
-        Probe::new(graph, shape, window, frame, effort)?.film()
+    let children = graph.shape(shape).children.clone();
+    let windows: Vec<[[f64; 3]; 2]> = children
+        .into_iter()
+        .filter_map(|child| {
+            let part = bounds.of(graph, child);
+            overlap(graph, whole, part, frame, width)
+        })
+        .collect();
+    let mut probe = Probe::new(graph, shape, whole, frame, Effort(*left))?;
+    *left = left.saturating_sub(PREPARATION * probe.operations());
+    let lines = (0..LINES).flat_map(|_| &windows);
+    lines.into_iter().find_map(|&window| {
+        *left = left.checked_sub(probe.operations_of_line())?;
+        probe.film_in(window)
     })
 }
 
@@ -95,9 +110,9 @@ fn overlap(
     b: [NodeId; 2],
     frame: &FrameValues,
     width: usize,
-) -> Option<[NodeId; 2]> {
+) -> Option<[[f64; 3]; 2]> {
     let corners = [graph.max(a[0], b[0]), graph.min(a[1], b[1])];
     let ends = evaluate_frame(graph, &corners, frame);
-    let [lo, hi] = [ends.first()?, ends.get(1)?];
-    (0..width).all(|axis| lo[axis] <= hi[axis]).then_some(corners)
+    let [lo, hi] = [ends.first()?, ends.get(1)?].map(|end| [end[0], end[1], end[2]]);
+    (0..width).all(|axis| lo[axis] <= hi[axis]).then_some([lo, hi])
 }

@@ -14,9 +14,8 @@ const SURFACE: usize = 200;
 /// Bisections between points of opposite sign, and iterations of the search for the nearest point
 /// of a surface.
 const BISECTIONS: usize = 50;
-/// Number of lines that are searched for a film, of points on each, and of steps of the search for
-/// the least value between two points.
-const LINES: usize = 48;
+/// Number of points on a line that is searched for a film, and of steps of the search for the least
+/// value between two of them.
 const LINE_POINTS: usize = 24;
 const NARROWINGS: usize = 48;
 const ITERATIONS: usize = 300;
@@ -80,22 +79,8 @@ impl Probe {
         };
         let field = Expander::new().field(graph, shape, point).ok()?;
         let tape = Tape::new(graph, &[field]).ok()?;
-        let mut region = [[0.0; 3]; 2];
-        let mut scale = 0.0f64;
-        for axis in 0..axes(dim) {
-            let [lo, hi] = [bounds[0][axis], bounds[1][axis]];
-            let (lo, hi) = match (lo.is_finite(), hi.is_finite()) {
-                (true, true) => (lo, hi),
-                (true, false) => (lo, lo + 2.0 * REACH),
-                (false, true) => (hi - 2.0 * REACH, hi),
-                (false, false) => (-REACH, REACH),
-            };
-            if lo > hi {
-                return None;
-            }
-            (region[0][axis], region[1][axis]) = (lo, hi);
-            scale = scale.max(hi - lo);
-        }
+        let region = finite(bounds, axes(dim))?;
+        let scale = longest(region);
         let (axes, frame, random) = (axes(dim), frame.clone(), Random(7));
         (scale > 0.0).then_some(Self { tape, frame, axes, bounds, region, scale, random, effort })
     }
@@ -116,10 +101,15 @@ impl Probe {
 
     /// A random point of the region, which is enlarged by a fraction of its size.
     fn point(&mut self, enlarged: f64) -> Point {
+        self.point_in(self.region, enlarged)
+    }
+
+    /// A random point of a box, which is enlarged by a fraction of its size.
+    fn point_in(&mut self, region: [Point; 2], enlarged: f64) -> Point {
+        let margin = enlarged * longest(region);
         let mut point = [0.0; 3];
         for (axis, coordinate) in point.iter_mut().enumerate().take(self.axes) {
-            let (lo, hi) = (self.region[0][axis], self.region[1][axis]);
-            let margin = enlarged * self.scale;
+            let (lo, hi) = (region[0][axis], region[1][axis]);
             *coordinate = lo - margin + (hi - lo + 2.0 * margin) * self.random.next();
         }
         point
@@ -210,14 +200,26 @@ impl Probe {
         self.at(foot).abs() <= INEXACT * field.abs() + SLACK * self.scale
     }
 
-    /// A point of a film: a minimum of the field along a line that is 0 and not negative.
-    pub(super) fn film(&mut self) -> Option<Vec<f64>> {
-        let per_line = LINE_POINTS + NARROWINGS;
-        let count = self.effort.of(LINES * per_line, &self.tape) / per_line;
-        let at = (0..count).find_map(|_| {
-            let [from, to] = [self.point(BEYOND), self.point(BEYOND)];
-            film_between(&mut self.field(), from, to)
-        })?;
+    /// The scalar operations of one evaluation.
+    pub(super) fn operations(&self) -> u64 {
+        self.tape.operations() as u64
+    }
+
+    /// The scalar operations that [`Self::film_in`] takes at most, if a line has one such minimum.
+    pub(super) fn operations_of_line(&self) -> u64 {
+        (LINE_POINTS + NARROWINGS) as u64 * self.operations()
+    }
+
+    /// A point of a film on a random line through a box: a minimum of the field along the line that
+    /// is 0 and not negative. Axes on which the box is infinite are limited.
+    pub(super) fn film_in(&mut self, window: [Point; 2]) -> Option<Vec<f64>> {
+        let window = finite(window, self.axes)?;
+        let [from, to] = [(); 2].map(|()| self.point_in(window, BEYOND));
+        let mut at = film_between(&mut self.field(), from, to)?;
+        // Other coordinates are rounding errors.
+        for coordinate in &mut at {
+            *coordinate = if coordinate.abs() < 1e-9 * self.scale { 0.0 } else { *coordinate };
+        }
         Some(self.lanes(at))
     }
 
@@ -274,6 +276,30 @@ fn crossing(field: &mut Evaluator<'_, f64>, mut from: Point, mut to: Point) -> P
         *end = middle;
     }
     from
+}
+
+/// The box, limited where it is infinite. `None` if it is empty.
+fn finite(bounds: [Point; 2], axes: usize) -> Option<[Point; 2]> {
+    let mut region = [[0.0; 3]; 2];
+    for axis in 0..axes {
+        let [lo, hi] = [bounds[0][axis], bounds[1][axis]];
+        let (lo, hi) = match (lo.is_finite(), hi.is_finite()) {
+            (true, true) => (lo, hi),
+            (true, false) => (lo, lo + 2.0 * REACH),
+            (false, true) => (hi - 2.0 * REACH, hi),
+            (false, false) => (-REACH, REACH),
+        };
+        if lo > hi {
+            return None;
+        }
+        (region[0][axis], region[1][axis]) = (lo, hi);
+    }
+    Some(region)
+}
+
+/// The longest edge of a box.
+fn longest([lo, hi]: [Point; 2]) -> f64 {
+    [0, 1, 2].map(|axis| hi[axis] - lo[axis]).into_iter().fold(0.0, f64::max)
 }
 
 /// A point between two points at which the field is 0 and a minimum along the line.
