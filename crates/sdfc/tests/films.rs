@@ -7,7 +7,7 @@ fn films(text: &str) -> Vec<(u32, String)> {
     let found = Compiler::new().check("scene.sdf", text);
     assert!(!found.has_errors(), "{found}");
     let is_film = |located: &Located| located.code == "W0609";
-    found.located().into_iter().filter(is_film).map(|it| (it.start.line as u32, it.message)).collect()
+    found.located().into_iter().filter(is_film).map(|it| (it.start.line, it.message)).collect()
 }
 
 #[test]
