@@ -55,6 +55,23 @@ impl Cell {
         Face { at: moved(self.at, usize::from(axis), by), size: self.size, axis }
     }
 
+    /// Returns the lowest corners of the cells of this size that share a face or an edge with it,
+    /// of those within a grid.
+    pub(crate) fn beside(self, grid: &Grid) -> impl Iterator<Item = Corner> + use<> {
+        let (cell, end) = (self, grid.size);
+        let corner = move |index: i64| {
+            let steps = [index % 3 - 1, index / 3 % 3 - 1, index / 9 - 1];
+            let is_shared = matches!(steps.iter().filter(|step| **step == 0).count(), 1 | 2);
+            let mut at = cell.at;
+            for axis in 0..3 {
+                let x = i64::from(at[axis]) + steps[axis] * i64::from(cell.size);
+                at[axis] = u32::try_from(x).ok().filter(|x| *x < end)?;
+            }
+            is_shared.then_some(at)
+        };
+        (0..27).filter_map(corner)
+    }
+
     /// Returns bits of the sides that contain a position: `1 << 2 * axis` for the lower one.
     pub(crate) fn sides(self, at: Corner) -> u8 {
         let mut sides = 0;

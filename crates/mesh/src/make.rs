@@ -65,7 +65,7 @@ impl Maker<'_> {
         let prober = &field.prober();
         let sizes = Sizes::of(grid);
         let mut refiner = Refiner { prober, field, grid, error, sizes, max_cells };
-        let mut cells = Cells { tree: Tree::new(grid.is_flat), ..Cells::default() };
+        let mut cells = Cells::new(Tree::new(grid.is_flat));
         refiner.grow(&mut cells.tree, vec![grid.root()], progress)?;
         let mut best = self.attempt::<S>(&refiner, &mut cells, None, progress)?;
         for _ in 0..ROUNDS {

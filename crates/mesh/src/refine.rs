@@ -3,13 +3,13 @@
 use std::ops::ControlFlow;
 
 use rayon::prelude::*;
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 use crate::error::{MeshError, Phase, Progress};
 use crate::examine::{Sizes, Verdict, examine, is_near};
 use crate::field::{LocalField, Prober, is_inside};
 use crate::grid::{Cell, Corner, Grid};
-use crate::loops::{Boundary, boundary};
+use crate::loops::{Boundary, LoopStep, boundary};
 use crate::patch::Placer;
 use crate::tree::Tree;
 
@@ -26,7 +26,37 @@ pub(crate) struct Cells {
     pub(crate) signs: Signs,
     /// Leaves whose triangles are near the surface beside smaller leaves, with the number of
     /// crossings of their loops: if that has not changed, they need no further look.
-    pub(crate) near: FxHashMap<Cell, usize>,
+    near: FxHashMap<Cell, usize>,
+    /// Leaves that need no look at their boundary: no cell beside them was split after the last.
+    settled: FxHashSet<Cell>,
+    /// The boundaries of leaves beside smaller ones whose triangles were not yet compared with the
+    /// surface.
+    refined: FxHashMap<Cell, Vec<Vec<LoopStep>>>,
+}
+
+impl Cells {
+    /// Returns the leaves of a tree, none of which is settled.
+    pub(crate) fn new(tree: Tree) -> Self {
+        Self { tree, ..Self::default() }
+    }
+
+    /// Returns the leaves that are not settled, after those are taken into account that were split
+    /// since the last call: each changes the boundary of leaves beside it that are not smaller.
+    fn unsettled(&mut self, grid: &Grid) -> Vec<Cell> {
+        let news = self.tree.take_news();
+        if !self.settled.is_empty() {
+            for cell in news {
+                for at in cell.beside(grid) {
+                    let leaf = self.tree.leaf_at(grid.root(), at);
+                    if leaf.size >= cell.size {
+                        self.settled.remove(&leaf);
+                    }
+                }
+            }
+        }
+        let leaves = self.tree.leaves.iter().copied();
+        leaves.filter(|leaf| !self.settled.contains(leaf)).collect()
+    }
 }
 
 /// Reports progress; stops the work if it breaks.
@@ -114,57 +144,67 @@ impl<'f> Refiner<'_, 'f> {
         progress: OnProgress<'_>,
     ) -> Result<(), MeshError> {
         loop {
-            self.add_signs(&cells.tree, &mut cells.signs);
-            let boundaries = boundaries(cells);
-            let is_tangled = |it: &Boundary| matches!(it, Boundary::Tangled);
-            let fails = match boundaries.iter().any(is_tangled) {
-                true => boundaries.iter().map(is_tangled).collect(),
-                false => self.far(cells, &boundaries),
-            };
-            if !fails.contains(&true) {
+            let unsettled = cells.unsettled(self.grid);
+            self.add_signs(&cells.tree, &unsettled, &mut cells.signs);
+            let mut fails = FxHashSet::default();
+            for (cell, boundary) in boundaries(cells, unsettled) {
+                cells.refined.remove(&cell);
+                cells.settled.insert(cell);
+                match boundary {
+                    Boundary::Plain => {}
+                    Boundary::Refined(loops) => {
+                        cells.refined.insert(cell, loops);
+                    }
+                    Boundary::Tangled => {
+                        fails.insert(cell);
+                    }
+                }
+            }
+            if fails.is_empty() {
+                fails = self.far(cells);
+            }
+            if fails.is_empty() {
                 return Ok(());
             }
             let leaves = std::mem::take(&mut cells.tree.leaves);
-            let mut divided = Vec::new();
-            for (cell, fails) in leaves.into_iter().zip(fails) {
-                if fails { divided.push(cell) } else { cells.tree.leaves.push(cell) }
-            }
+            let (divided, kept) = leaves.into_iter().partition(|cell| fails.contains(cell));
+            cells.tree.leaves = kept;
             self.grow(&mut cells.tree, divided, progress)?;
         }
     }
 
-    /// Returns, for each leaf, whether its triangles are far from the surface.
+    /// Returns the leaves beside smaller ones whose triangles are far from the surface.
     ///
     /// `examine` decides about a cell without its neighbours. If one of them is smaller, the loop
     /// has more crossings, and the vertex within the cell moves.
-    fn far(&self, cells: &mut Cells, boundaries: &[Boundary]) -> Vec<bool> {
-        let Cells { tree, near, .. } = cells;
-        let known = &*near;
-        let compare = |prober: &mut Prober<'f>, (cell, boundary): (&Cell, &Boundary)| {
-            let Boundary::Refined(loops) = boundary else { return None };
+    fn far(&self, cells: &mut Cells) -> FxHashSet<Cell> {
+        let refined: Vec<_> = std::mem::take(&mut cells.refined).into_iter().collect();
+        let known = &cells.near;
+        let compare = |prober: &mut Prober<'f>, (cell, loops): (Cell, Vec<Vec<LoopStep>>)| {
             let count = loops.iter().map(Vec::len).sum();
-            if known.get(cell) == Some(&count) {
-                return None;
+            if known.get(&cell) == Some(&count) {
+                return (cell, count, true);
             }
             let mut placer = Placer { prober, grid: self.grid, error: self.error };
-            Some((count, is_near(&mut placer, *cell, loops)))
+            (cell, count, is_near(&mut placer, cell, &loops))
         };
-        let leaves = tree.leaves.par_iter().zip(boundaries);
-        let found: Vec<Option<(usize, bool)>> =
-            leaves.map_init(|| self.prober.clone(), compare).collect();
-        for (cell, found) in tree.leaves.iter().zip(&found) {
-            if let Some((count, true)) = found {
-                near.insert(*cell, *count);
+        let found: Vec<(Cell, usize, bool)> =
+            refined.into_par_iter().map_init(|| self.prober.clone(), compare).collect();
+        let mut far = FxHashSet::default();
+        for (cell, count, is_near) in found {
+            if is_near {
+                cells.near.insert(cell, count);
+            } else {
+                far.insert(cell);
             }
         }
-        found.into_iter().map(|found| found.is_some_and(|(_, is_near)| !is_near)).collect()
+        far
     }
 
-    /// Computes the signs of all corners of smallest edges of leaves.
-    fn add_signs(&self, tree: &Tree, signs: &mut Signs) {
+    /// Computes the signs of all corners of smallest edges of some leaves.
+    fn add_signs(&self, tree: &Tree, leaves: &[Cell], signs: &mut Signs) {
         let known = &*signs;
-        let mut missing: Vec<Corner> = tree
-            .leaves
+        let mut missing: Vec<Corner> = leaves
             .par_iter()
             .flat_map_iter(|cell| {
                 let mut corners = Vec::new();
@@ -192,8 +232,8 @@ impl<'f> Refiner<'_, 'f> {
     }
 }
 
-/// Returns how the surface crosses the boundary of each leaf.
-fn boundaries(Cells { tree, signs, .. }: &Cells) -> Vec<Boundary> {
+/// Returns leaves with how the surface crosses their boundaries.
+fn boundaries(Cells { tree, signs, .. }: &Cells, leaves: Vec<Cell>) -> Vec<(Cell, Boundary)> {
     let sign = |at: Corner| signs.get(&at).copied().unwrap_or(false);
-    tree.leaves.par_iter().map(|cell| boundary(tree, *cell, sign)).collect()
+    leaves.into_par_iter().map(|cell| (cell, boundary(tree, cell, sign))).collect()
 }

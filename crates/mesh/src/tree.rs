@@ -8,6 +8,8 @@ use crate::grid::{Cell, Corner, Edge, Face};
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Tree {
     split: FxHashSet<Cell>,
+    /// The cells that were split since [`Tree::take_news`] was called.
+    news: Vec<Cell>,
     /// The leaves that may contain surface, in no order.
     pub(crate) leaves: Vec<Cell>,
     /// True if it is the quadtree of a flat grid: a cell is represented by its base.
@@ -33,6 +35,12 @@ impl Tree {
 
     pub(crate) fn split(&mut self, cell: Cell) {
         self.split.insert(cell);
+        self.news.push(cell);
+    }
+
+    /// Returns the cells that were split since the last call.
+    pub(crate) fn take_news(&mut self) -> Vec<Cell> {
+        std::mem::take(&mut self.news)
     }
 
     /// Returns the number of cells that are split.
