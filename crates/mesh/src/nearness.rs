@@ -66,20 +66,27 @@ pub(crate) fn is_in_box(corners: [Vec3; 3], half: Vec3) -> bool {
         let [x, y, z] = [a[axis], b[axis], c[axis]];
         x.min(y).min(z) > half[axis] || x.max(y).max(z) < -half[axis]
     };
-    if (0..3).any(is_beside) {
+    if is_beside(0) || is_beside(1) || is_beside(2) {
         return false;
     }
-    let edges = [sub(b, a), sub(c, b), sub(a, c)];
-    let size =
-        corners.into_iter().flatten().chain(half).fold(0.0, |most: f64, x| most.max(x.abs()));
+    let is_within =
+        |p: Vec3| p[0].abs() <= half[0] && p[1].abs() <= half[1] && p[2].abs() <= half[2];
+    if is_within(a) || is_within(b) || is_within(c) {
+        return true;
+    }
+    let greatest = |[x, y, z]: Vec3| x.abs().max(y.abs()).max(z.abs());
+    let size = greatest(a).max(greatest(b)).max(greatest(c)).max(greatest(half));
     let separates = |axis: Vec3| {
-        let [x, y, z] = corners.map(|corner| dot(axis, corner));
+        let [x, y, z] = [dot(axis, a), dot(axis, b), dot(axis, c)];
         let slopes = axis.map(f64::abs);
         let reach = dot(slopes, half) + ROUNDING * size * (slopes[0] + slopes[1] + slopes[2]);
         x.min(y).min(z) > reach || x.max(y).max(z) < -reach
     };
-    let across = |[x, y, z]: Vec3| [[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]];
-    !separates(cross(edges[0], edges[1])) && !edges.into_iter().flat_map(across).any(separates)
+    let across = |[x, y, z]: Vec3| {
+        separates([0.0, -z, y]) || separates([z, 0.0, -x]) || separates([-y, x, 0.0])
+    };
+    let [ab, bc, ca] = [sub(b, a), sub(c, b), sub(a, c)];
+    !separates(cross(ab, bc)) && !across(ab) && !across(bc) && !across(ca)
 }
 
 /// The distances along a direction at which a line through a point enters and leaves the box
