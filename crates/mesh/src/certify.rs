@@ -220,7 +220,7 @@ impl<'f> Prover<'_, 'f> {
         if few && !is_flat && self.is_wedge(prober, bounds, triangles) {
             return Outcome::Sheet;
         }
-        if self.is_small(prober, bounds, triangles, is_absent) {
+        if self.is_small(prober, bounds, triangles, [is_absent, is_free]) {
             return Outcome::Small;
         }
         // Where a plane lies in a face of the scene, no box is small enough.
@@ -322,7 +322,7 @@ impl<'f> Prover<'_, 'f> {
         prober: &mut Prober<'_>,
         bounds: [Vec3; 2],
         triangles: &[u32],
-        is_absent: bool,
+        [is_absent, is_free]: [bool; 2],
     ) -> bool {
         let middle = between(bounds[0], bounds[1], 0.5);
         let radius = length(sub(bounds[1], middle)) * (1.0 + 1e-12);
@@ -334,7 +334,6 @@ impl<'f> Prover<'_, 'f> {
         if !is_absent && !triangles.iter().any(is_near) {
             return false;
         }
-        let is_free = !triangles.iter().any(|t| meets(self.corners(*t), bounds, 0.0));
         is_free || changes_sign(prober, middle, 0.999 * rest)
     }
 }
