@@ -48,6 +48,9 @@ fn sentence_for(here: &str) -> String {
     let sentence = format!("that is `{here}` here");
     let blend = here.strip_prefix("union(a, b, blend: ").and_then(|rest| rest.strip_suffix(')'));
     match blend {
+        None if here == "quadratic_bezier" => {
+            format!("{sentence}, in the plane; in space, write sweep(circle(0.1), points)")
+        }
         Some(blend) => format!("{sentence}; of two numbers, it is `{blend}(a, b)`"),
         None => sentence,
     }

@@ -109,6 +109,11 @@ fn wrong_calls_are_reported() {
         "camera(eye: [1, 2, 3], fov: 40deg, height: 3)\nambient(1, 2, 3)\nsphere(camera)",
         "let line = [[0, 0, 0], [1, 0, 0], [1, 1, 0]]\ntube(line, r: 0.1)\npipe(line)\nrope(line)\nsphere(smin(1, 2, 0.1))",
         "let letters = \"QWERTY\"\ntext(letters[1])",
+        "sphere(1).emission(#fff, 5)\ntext(\"a\", align: center)\nfn f(q) = normalize(q)\nsphere(f(1))",
+        "union [sphere(1), box(1)]",
+        "union(for i in 1..=12: sphere(i))",
+        "let part = import(\"part.stl\")",
+        "sweep(circle(0.1), bezier([0, 0, 0], [1, 1, 0], [2, 0, 1]))",
         "fn f(a = 1) exact = a\nsolid g() -> number\n lipschitz 1\n lipschitz 2\n = f()\ng()\nlet h = fn(a = 1, b: number...) bounds 0..1 = a",
     ]));
 }

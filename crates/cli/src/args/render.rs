@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::ValueEnum;
+use clap::builder::UnknownArgumentValueParser;
 use sdfc::{Backend, Method};
 use sdfc_render::MAX_SAMPLES;
 
@@ -22,6 +23,9 @@ pub struct Render {
     /// Width and height in pixels
     #[arg(long, value_name = "WxH", default_value = "640x400", value_parser = size)]
     pub size: [u32; 2],
+    /// Other tools have this option; the message names ours.
+    #[arg(long, hide = true, value_parser = UnknownArgumentValueParser::suggest_arg("--size"))]
+    width: Option<String>,
     /// Ray method [default: that of the scene, or auto]
     #[arg(long, value_name = "METHOD", value_parser = methods())]
     pub march: Option<Method>,

@@ -136,6 +136,23 @@ impl<'a> Checker<'a> {
         let found = found.help(format!("give the parameter a value: {name}: {value}"));
         Some(found.help(format!("or define it above this line: let {name} = ...")))
     }
+
+    /// The diagnostic for a word for a string, as in `align: center`.
+    pub(super) fn word_without_quotes(
+        &mut self,
+        parameter: &ParameterSignature,
+        given: &Given<'a>,
+    ) -> Option<Diagnostic> {
+        let Value::Expr(ast::Expr { kind: ast::ExprKind::Name(word), span }) = given.value else {
+            return None;
+        };
+        if parameter.ty != Type::Text || self.look_up(word).is_some() {
+            return None;
+        }
+        let message = format!("`{}` is a string, and `{word}` is an unknown name", parameter.name);
+        let found = Diagnostic::error(Code::UNKNOWN_NAME, *span, message);
+        Some(found.help(format!("write the string in quotes: {}: \"{word}\"", parameter.name)))
+    }
 }
 
 /// The diagnostic for too many arguments, of which at most `unnamed` have no name.
@@ -153,7 +170,12 @@ pub(super) fn too_many(
         }
         n => format!("`{name}` takes at most {}", count(n, "argument")),
     };
-    Diagnostic::error(Code::ARGUMENTS, span, message).help(signature(callee.name, parameters))
+    let found = Diagnostic::error(Code::ARGUMENTS, span, message);
+    let found = found.help(signature(callee.name, parameters));
+    match name {
+        "emission" => found.help("stronger light is a brighter colour: emission(5 * #ffcc80)"),
+        _ => found,
+    }
 }
 
 /// The signature of a call, as in `capsule(a: vec3, b: vec3, r: number = 0.5)`.

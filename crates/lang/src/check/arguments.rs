@@ -87,7 +87,13 @@ impl<'a> Checker<'a> {
                 }
             };
             match index {
-                Some(index) => bound[index].push(given),
+                Some(index) => {
+                    if let Some(found) = self.word_without_quotes(&parameters[index], &given) {
+                        self.report(found);
+                        given = Given::done(poison(given.span));
+                    }
+                    bound[index].push(given);
+                }
                 None => excess.push(given),
             }
         }

@@ -177,7 +177,15 @@ impl<'a> Checker<'a> {
 
     pub(super) fn wrong_argument(&mut self, callee: Callee, value: &Expr, wants: &str) -> Expr {
         let message = format!("`{}` takes {wants}; this is {}", callee.name, describe(&value.ty));
-        self.report(Diagnostic::error(Code::TYPE_MISMATCH, value.span, message));
+        let found = Diagnostic::error(Code::TYPE_MISMATCH, value.span, message);
+        let is_local = matches!(value.kind, ExprKind::Local(_)) && value.ty == Type::Number;
+        self.report(match is_local && wants.contains("vec") {
+            true => found.help(
+                "a parameter without a type is a number; a vector's has one: fn f(q: vec3) = \
+                 length(q)",
+            ),
+            false => found,
+        });
         poison(callee.span)
     }
 

@@ -177,7 +177,7 @@ impl Parser<'_> {
                     ExprKind::Call(Box::new(base), args)
                 }
                 TokenKind::OpenBracket if !next.first => {
-                    let index = self.index()?;
+                    let index = self.index(&base)?;
                     ExprKind::Index(Box::new(base), Box::new(index))
                 }
                 TokenKind::PointNumber if !next.first => return self.glued_number(&base),
@@ -215,11 +215,17 @@ impl Parser<'_> {
     }
 
     /// Parses `[index]`.
-    fn index(&mut self) -> Parsed<Expr> {
+    fn index(&mut self, base: &Expr) -> Parsed<Expr> {
         let opener = self.open();
         let depth = self.open.len();
         let index = self.nested(opener.span, |parser| parser.expr_or_skip(&[]));
         self.open.truncate(depth);
+        if self.kind() == TokenKind::Comma {
+            let base = self.slice(base.span);
+            let call = format!("the arguments of a call stand in round brackets: {base}(...)");
+            let nested = format!("an element of a list of lists is {base}[i][j]");
+            return self.expected_with("an operator or `]`", &[&call, &nested]);
+        }
         self.close(opener, "an operator")?;
         index
     }

@@ -78,14 +78,18 @@ impl Parser<'_> {
             TokenKind::Let if !self.next().first => {
                 &["`let` stands at top level, or in a block: { let a = 1; a + 1 }"]
             }
-            TokenKind::Solid
-            | TokenKind::Region
-            | TokenKind::Shape
-            | TokenKind::Param
-            | TokenKind::Import
+            TokenKind::Solid | TokenKind::Region | TokenKind::Shape | TokenKind::Param
                 if !self.next().first =>
             {
                 &["declarations stand at top level, each on a line of its own"]
+            }
+            TokenKind::Import if !self.next().first => &[
+                "an import stands on a line of its own: import gear from \"gear.sdf\"",
+                "it reads scenes; meshes cannot be imported",
+            ],
+            TokenKind::Eq if before == ".." => {
+                &["a range is written without `=`. A loop leaves out its end: 1..13 counts to 12; \
+                 the range of a param includes it"]
             }
             TokenKind::Else => &["`else` follows the `}` of an `if`"],
             TokenKind::Star if before == "*" => &["powers are written `pow(x, 2)`"],
