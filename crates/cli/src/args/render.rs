@@ -25,7 +25,7 @@ pub struct Render {
     pub size: [u32; 2],
     /// Other tools have this option; the message names ours.
     #[arg(long, hide = true, value_parser = UnknownArgumentValueParser::suggest_arg("--size"))]
-    width: Option<String>,
+    pub width: Option<String>,
     /// Ray method [default: that of the scene, or auto]
     #[arg(long, value_name = "METHOD", value_parser = methods())]
     pub march: Option<Method>,

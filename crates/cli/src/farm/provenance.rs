@@ -82,6 +82,7 @@ impl Drawing {
             file: _,
             output: _,
             size,
+            width: _,
             march,
             backend: _,
             loops,

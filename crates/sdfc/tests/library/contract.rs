@@ -16,6 +16,9 @@ use crate::{mutants, rays, variants};
 /// Scenes with other numbers: the least number that is checked, and the largest number that is
 /// tried. More than the least number are checked until every mutant is refuted.
 const VARIANTS: usize = 12;
+/// The same for a field of many scalar operations, such as a text: a scene of it takes seconds.
+const FEW_VARIANTS: usize = 3;
+const MANY_OPERATIONS: usize = 300;
 const TRIES: usize = 400;
 
 /// The outcome of a check.
@@ -50,9 +53,10 @@ pub fn check(entry: &Entry) -> Result<Outcome, String> {
         one(entry, &scene, id, &entry.example, &mut outcome)?;
     }
     outcome.scenes = 1;
+    let variants = if is_costly(&scene) { FEW_VARIANTS } else { VARIANTS };
     let mut random = Random(1);
     for _ in 0..TRIES {
-        if outcome.scenes > VARIANTS && missing(entry, &outcome).is_none() {
+        if outcome.scenes > variants && missing(entry, &outcome).is_none() {
             break;
         }
         let text = variants::changed(&entry.example, &mut random);
@@ -63,6 +67,11 @@ pub fn check(entry: &Entry) -> Result<Outcome, String> {
         outcome.scenes += 1;
     }
     missing(entry, &outcome).map_or(Ok(outcome), Err)
+}
+
+fn is_costly(scene: &Scene) -> bool {
+    let cost = sdfc_analyze::cost_of_shapes(&scene.graph, scene.root.as_slice());
+    cost.is_some_and(|cost| cost.operations > MANY_OPERATIONS)
 }
 
 /// Returns a mutant that no scene refutes, or a condition that holds in every scene.
