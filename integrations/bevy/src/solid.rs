@@ -2,10 +2,10 @@
 
 use std::collections::BTreeMap;
 
+use bevy::asset::Handle;
 use bevy::camera::visibility::Visibility;
 use bevy::color::{Color, LinearRgba};
 use bevy::ecs::prelude::*;
-use bevy::asset::Handle;
 use bevy::math::Vec3;
 use bevy::transform::components::Transform;
 use sdfc::Value;

@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, Mutex};
 
-use bevy::app::{PluginsState, PanicHandlerPlugin, TerminalCtrlCHandlerPlugin};
+use bevy::app::{PanicHandlerPlugin, PluginsState, TerminalCtrlCHandlerPlugin};
 use bevy::camera::RenderTarget;
 use bevy::log::LogPlugin;
 use bevy::prelude::*;
@@ -110,7 +110,10 @@ impl Headless {
 
 impl Picture {
     /// Writes the picture as PNG.
-    pub fn save(&self, path: impl AsRef<std::path::Path>) -> Result<(), Box<dyn std::error::Error>> {
+    pub fn save(
+        &self,
+        path: impl AsRef<std::path::Path>,
+    ) -> Result<(), Box<dyn std::error::Error>> {
         let file = std::io::BufWriter::new(std::fs::File::create(path)?);
         let mut encoder = png::Encoder::new(file, self.size[0], self.size[1]);
         encoder.set_color(png::ColorType::Rgba);

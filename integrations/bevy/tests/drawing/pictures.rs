@@ -2,6 +2,8 @@
 
 use bevy::core_pipeline::prepass::{DepthPrepass, MotionVectorPrepass, NormalPrepass};
 use bevy::prelude::*;
+use bevy::render::RenderApp;
+use bevy::render::render_resource::{CachedPipelineState, PipelineCache};
 use sdfc_bevy::{SdfcSolid, SdfcStatus};
 
 use crate::support::*;
@@ -82,7 +84,8 @@ fn two_scenes_are_drawn_at_once() {
             mesh: Cuboid::new(1.0, 0.8, 0.6).into(),
             scene: "box([1, 0.8, 0.6])",
             color: Color::srgb(0.8, 0.6, 0.2),
-            transform: Transform::from_xyz(-0.4, 0.9, 0.3).with_rotation(Quat::from_rotation_y(0.5)),
+            transform: Transform::from_xyz(-0.4, 0.9, 0.3)
+                .with_rotation(Quat::from_rotation_y(0.5)),
         };
         brick.spawn(world, kind);
         ball().spawn(world, kind);
@@ -263,4 +266,49 @@ fn a_scene_with_long_lists_is_drawn() {
         camera(world);
     });
     assert!(is_mostly(RED, picture.at(pixel(Vec3::new(0.3, 0.5, 0.25)))));
+}
+
+/// Scenes of `examples` that together use loops, lists, patterns, several ray methods and the time.
+const EXAMPLES: [&str; 6] =
+    ["gyroid_lattice", "mandelbulb", "materials", "menger_sponge", "params", "time"];
+
+#[test]
+fn bevy_accepts_the_shaders_of_examples() {
+    let (picture, errors) = with_app(|headless| {
+        let world = headless.app.world_mut();
+        for (name, x) in EXAMPLES.into_iter().zip(0u8..) {
+            let path = format!("{}/../../examples/{name}.sdf", env!("CARGO_MANIFEST_DIR"));
+            let text = std::fs::read_to_string(path).unwrap();
+            let mut solid = SdfcSolid::new(add_scene(world, &text));
+            // Some of them stand on a floor without a limit.
+            solid.bounds = Some([Vec3::splat(-1.2), Vec3::splat(1.2)]);
+            let at = Transform::from_xyz(f32::from(x) - 2.5, 0.0, 0.0);
+            world.spawn((solid, at.with_scale(Vec3::splat(0.35))));
+        }
+        sun(world);
+        let camera = parallel_camera(world);
+        let at = Transform::from_xyz(0.0, 2.0, 5.0).looking_at(Vec3::ZERO, Vec3::Y);
+        world.entity_mut(camera).insert(at);
+        aim(headless);
+        let picture = headless.picture();
+        let cache = headless.app.sub_app(RenderApp).world().resource::<PipelineCache>();
+        let failed = |state: &CachedPipelineState| match state {
+            CachedPipelineState::Err(error) => Some(error.to_string()),
+            CachedPipelineState::Ok(_)
+            | CachedPipelineState::Queued
+            | CachedPipelineState::Creating(_) => None,
+        };
+        let errors: Vec<_> = cache.pipelines().filter_map(|it| failed(&it.state)).collect();
+        (picture, errors)
+    });
+    picture.save(format!("{}/examples.png", env!("CARGO_TARGET_TMPDIR"))).unwrap();
+    assert!(errors.is_empty(), "{errors:?}");
+    let background = picture.at([0, 0]);
+    for (name, x) in EXAMPLES.into_iter().zip(0..) {
+        // 48 pixels show one unit.
+        let left = SIZE[0] / 2 + 48 * x - 3 * 48;
+        let pixels = (left..left + 48).flat_map(|x| (0..SIZE[1]).map(move |y| [x, y]));
+        let drawn = pixels.filter(|&at| picture.at(at) != background).count();
+        assert!(drawn > 200, "{name} has {drawn} pixels");
+    }
 }

@@ -108,11 +108,8 @@ impl Body {
         let Self { mesh, scene, color, transform } = self;
         match kind {
             Kind::Mesh => {
-                let material = StandardMaterial {
-                    base_color: color,
-                    perceptual_roughness: 0.6,
-                    ..default()
-                };
+                let material =
+                    StandardMaterial { base_color: color, perceptual_roughness: 0.6, ..default() };
                 mesh_with(world, mesh, material, transform)
             }
             Kind::Solid => {
@@ -169,13 +166,9 @@ pub fn bar(world: &mut World) -> Entity {
 
 /// A directional light with shadows, from above on the right.
 pub fn sun(world: &mut World) -> Entity {
-    let light =
-        DirectionalLight { illuminance: 4000.0, shadow_maps_enabled: true, ..default() };
-    let cascades = CascadeShadowConfigBuilder {
-        num_cascades: 1,
-        maximum_distance: 12.0,
-        ..default()
-    };
+    let light = DirectionalLight { illuminance: 4000.0, shadow_maps_enabled: true, ..default() };
+    let cascades =
+        CascadeShadowConfigBuilder { num_cascades: 1, maximum_distance: 12.0, ..default() };
     let at = Transform::from_xyz(2.5, 4.0, 1.0).looking_at(Vec3::ZERO, Vec3::Y);
     world.spawn((light, cascades.build(), at)).id()
 }
