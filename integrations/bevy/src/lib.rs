@@ -1,4 +1,25 @@
 //! Draws compiled sdfc scenes in Bevy, among meshes, with depth, light and shadows.
+//!
+//! ```no_run
+//! use bevy::prelude::*;
+//! use sdfc_bevy::{SdfcPlugin, SdfcSolid};
+//!
+//! fn main() {
+//!     App::new().add_plugins((DefaultPlugins, SdfcPlugin)).add_systems(Startup, setup).run();
+//! }
+//!
+//! fn setup(mut commands: Commands, assets: Res<AssetServer>) {
+//!     let bowl = assets.load("bowl.sdf");
+//!     commands.spawn((SdfcSolid::new(bowl).with("wall", 0.1), Transform::from_xyz(0.0, 1.0, 0.0)));
+//! }
+//! ```
+//!
+//! [`SdfcSolid`] shows a scene at the transform of its entity. The plugin gives the entity the box
+//! of the scene's bounds as a mesh, and an [`SdfcMaterial`]. The material's shader is
+//! `surface.wgsl` with the functions of the scene: it marches the ray of a pixel inside the box,
+//! and writes depth and Bevy's lighting. Shadow passes and prepasses use the same shader.
+//!
+//! Lengths of a scene are Bevy's units, times the scale of the transform.
 
 mod loader;
 mod material;

@@ -91,8 +91,8 @@ impl SdfcSolid {
         }
     }
 
-    /// Sets a param by its name in the scene. [`SdfcStatus`] tells of a wrong name or value in the
-    /// next frame.
+    /// Sets a param by its name in the scene. In the next frame, [`SdfcStatus`] reports a wrong name
+    /// or value.
     pub fn set(&mut self, name: &str, value: impl Into<ParamValue>) {
         self.params.insert(name.to_owned(), value.into());
     }

@@ -42,7 +42,7 @@ struct SurfaceHit {
     depth: f32,
 }
 
-// Fraction of the box by which rays may miss it, so that rounding cuts off no surface.
+// The step budget of a ray.
 const SURFACE_STEPS: u32 = 256u;
 // Rays stop when they are nearer to the surface than this part of a pixel.
 const SURFACE_TOLERANCE: f32 = 0.25;
@@ -71,8 +71,8 @@ fn surface_march(on_box: vec3<f32>, instance: u32) -> SurfaceHit {
     let stretch = length(scaled);
     let direction = scaled / stretch;
 
-    // Where the ray is inside the box. Where a component of the direction is 0, so is that of the
-    // distance to a side or it has a sign: dividing by the least number keeps both.
+    // The interval of the ray inside the box. A component of 0 is replaced by one that is almost 0,
+    // so that no quotient is 0 / 0.
     let step_sign = select(vec3<f32>(-1.0), vec3<f32>(1.0), direction >= vec3<f32>(0.0));
     let divisor = step_sign * max(abs(direction), vec3<f32>(1e-12));
     let to_low = (surface_block.low.xyz - origin) / divisor;

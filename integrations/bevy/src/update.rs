@@ -87,22 +87,19 @@ pub(crate) fn update_solids(
         let is_current = |shown: &Mut<Shown>| {
             shown.revision == scene.revision() && !shown.moves && !solid.is_changed()
         };
-        let is_known_to_fail = |status: &SdfcStatus| {
-            matches!(status, SdfcStatus::Failed(_)) && shown.is_none() && !solid.is_changed()
-        };
-        if shown.as_ref().is_some_and(is_current) || is_known_to_fail(&status) {
+        if shown.as_ref().is_some_and(is_current) {
             continue;
         }
         let mut frame = scene.scene().defaults();
         (frame.time, frame.frame) = (time.elapsed_secs_f64(), f64::from(count.0));
-        let (look, told) = match look(scene, &solid, frame) {
+        let (look, reported) = match look(scene, &solid, frame) {
             Ok(found) => found,
             Err(message) => {
-                tell(&mut status, scene, SdfcStatus::Failed(message));
+                report(&mut status, scene, SdfcStatus::Failed(message));
                 continue;
             }
         };
-        tell(&mut status, scene, told);
+        report(&mut status, scene, reported);
         let material = SdfcMaterial {
             shader: shader.clone(),
             surface: surface_block(&solid, look.corners),
@@ -136,8 +133,8 @@ pub(crate) fn update_solids(
     }
 }
 
-/// Notes what became of a solid, and logs an error that is new.
-fn tell(status: &mut Mut<SdfcStatus>, scene: &SdfcScene, now: SdfcStatus) {
+/// Sets the status of a solid, and logs an error that is new.
+fn report(status: &mut Mut<SdfcStatus>, scene: &SdfcScene, now: SdfcStatus) {
     if status.set_if_neq(now)
         && let SdfcStatus::Failed(message) = &**status
     {
@@ -145,8 +142,8 @@ fn tell(status: &mut Mut<SdfcStatus>, scene: &SdfcScene, now: SdfcStatus) {
     }
 }
 
-/// What a solid looks like at a frame, with the values of its params. The status tells of the first
-/// param that could not be set; the others are.
+/// What a solid looks like at a frame, with the values of its params. The status is that of
+/// the first param that could not be set; the others are set.
 ///
 /// # Errors
 ///
@@ -156,11 +153,11 @@ fn look(
     solid: &SdfcSolid,
     mut frame: FrameValues,
 ) -> Result<(Look, SdfcStatus), String> {
-    let mut told = SdfcStatus::Drawn;
+    let mut reported = SdfcStatus::Drawn;
     for (name, value) in &solid.params {
         let set = scene.scene().set(&mut frame, name, value.as_value());
-        if let (Err(error), SdfcStatus::Drawn) = (set, &told) {
-            told = SdfcStatus::Failed(error.to_string());
+        if let (Err(error), SdfcStatus::Drawn) = (set, &reported) {
+            reported = SdfcStatus::Failed(error.to_string());
         }
     }
     let corners = match solid.bounds {
@@ -179,7 +176,7 @@ fn look(
     if !corners[0].cmplt(corners[1]).all() {
         return Err(format!("the box from {} to {} is empty", corners[0], corners[1]));
     }
-    Ok((Look { corners, params: scene.uniform(&frame) }, told))
+    Ok((Look { corners, params: scene.uniform(&frame) }, reported))
 }
 
 fn box_mesh([low, high]: [Vec3; 2]) -> Mesh {
