@@ -1,6 +1,9 @@
 //! Compares pictures of solids with pictures of meshes of the same shape.
 
-use bevy::core_pipeline::prepass::{DepthPrepass, MotionVectorPrepass, NormalPrepass};
+use bevy::core_pipeline::prepass::{
+    DeferredPrepass, DepthPrepass, MotionVectorPrepass, NormalPrepass,
+};
+use bevy::pbr::DefaultOpaqueRendererMethod;
 use bevy::prelude::*;
 use bevy::render::RenderApp;
 use bevy::render::render_resource::{CachedPipelineState, PipelineCache};
@@ -42,7 +45,7 @@ fn point_and_spot_lights_cast_the_same_shadows() {
     assert_agreement("spot", 20, |world, kind| {
         ball().spawn(world, kind);
         stage(world);
-        let light = SpotLight { intensity: 3e6, shadow_maps_enabled: true, ..default() };
+        let light = SpotLight { intensity: 1e6, shadow_maps_enabled: true, ..default() };
         let at = Transform::from_xyz(2.0, 3.0, 1.5).looking_at(Vec3::ZERO, Vec3::Y);
         world.spawn((light, at));
         camera(world);
@@ -74,6 +77,19 @@ fn a_solid_is_drawn_in_prepasses() {
         sun(world);
         let camera = camera(world);
         world.entity_mut(camera).insert((DepthPrepass, NormalPrepass, MotionVectorPrepass));
+    });
+}
+
+#[test]
+fn a_solid_is_drawn_beside_deferred_meshes() {
+    assert_agreement("deferred", 20, |world, kind| {
+        ball().spawn(world, kind);
+        stage(world);
+        bar(world);
+        sun(world);
+        let camera = camera(world);
+        world.entity_mut(camera).insert((DepthPrepass, DeferredPrepass));
+        world.insert_resource(DefaultOpaqueRendererMethod::deferred());
     });
 }
 
@@ -166,12 +182,14 @@ fn what_is_nearer_hides_what_is_behind() {
 
 #[test]
 fn a_solid_casts_a_shadow() {
-    // A ball in the air, and the point of the ground below it as the sun sees it.
-    let in_shadow = Vec3::new(-1.0, 0.0, -0.4) * 1.25;
-    let [without, with] = [false, true].map(|has_ball| {
+    // A ball in the air, and the point of the ground below it as the sun sees it. The second ball
+    // is nearer to the sun than the near plane of the shadow's view.
+    let in_shadow = Vec3::new(-1.25, 0.0, -0.5);
+    let pictures = [None, Some(1.0), Some(8.0)].map(|distance| {
         draw(move |world| {
-            if has_ball {
-                let transform = Transform::from_xyz(1.25, 4.0, 0.5).with_scale(Vec3::splat(0.5));
+            if let Some(distance) = distance {
+                let at = in_shadow + distance * Vec3::new(2.5, 4.0, 1.0);
+                let transform = Transform::from_translation(at).with_scale(Vec3::splat(0.5));
                 Body { transform, ..ball() }.spawn(world, Kind::Solid);
             }
             let ground = Plane3d::default().mesh().size(9.0, 9.0).build();
@@ -180,8 +198,9 @@ fn a_solid_casts_a_shadow() {
             camera(world);
         })
     });
-    let [without, with] = [without, with].map(|picture| picture.brightness(in_shadow));
-    assert!(2 * with < without, "{with} in the shadow, {without} without it");
+    let [without, near, far] = pictures.map(|picture| picture.brightness(in_shadow));
+    assert!(2 * near < without, "{near} in the shadow, {without} without it");
+    assert!(2 * far < without, "{far} in the shadow of a ball far away, {without} without it");
 }
 
 #[test]

@@ -7,6 +7,7 @@ use std::sync::{Mutex, OnceLock, PoisonError};
 use bevy::camera::ScalingMode;
 use bevy::core_pipeline::tonemapping::Tonemapping;
 use bevy::light::CascadeShadowConfigBuilder;
+use bevy::pbr::DefaultOpaqueRendererMethod;
 use bevy::prelude::*;
 use sdfc_bevy::{SdfcScene, SdfcSolid};
 
@@ -15,7 +16,7 @@ use crate::headless::{Headless, Picture};
 /// Size of the pictures.
 pub const SIZE: [u32; 2] = [320, 192];
 /// Greatest difference of a channel, in 255ths, at which two pixels are the same.
-pub const TOLERANCE: u8 = 6;
+pub const TOLERANCE: u8 = 3;
 /// A pixel is at an edge if a neighbour differs by more than this.
 const EDGE: u8 = 8;
 
@@ -177,8 +178,9 @@ fn camera_transform() -> Transform {
     Transform::from_translation(EYE).looking_at(FOCUS, Vec3::Y)
 }
 
-/// A camera with perspective and without anti-aliasing.
+/// A camera with perspective and without anti-aliasing, which draws meshes in the forward pass.
 pub fn camera(world: &mut World) -> Entity {
+    world.insert_resource(DefaultOpaqueRendererMethod::forward());
     let camera = (Camera3d::default(), Tonemapping::None, Msaa::Off, camera_transform());
     world.spawn(camera).id()
 }
