@@ -4,8 +4,9 @@
 //! cargo run --example among_meshes -- among_meshes.png
 //! ```
 //!
-//! It opens no window, so it runs on machines without a display. In a program with a window, `setup`
-//! is the same: add `DefaultPlugins` and `SdfcPlugin`, and leave out the target of the camera.
+//! It opens no window, so it runs on machines without a display. In a program with a window,
+//! `setup` is the same: add `DefaultPlugins` and `SdfcPlugin`, and leave out the target of the
+//! camera.
 
 mod headless;
 

@@ -10,7 +10,8 @@
 //!
 //! fn setup(mut commands: Commands, assets: Res<AssetServer>) {
 //!     let bowl = assets.load("bowl.sdf");
-//!     commands.spawn((SdfcSolid::new(bowl).with("wall", 0.1), Transform::from_xyz(0.0, 1.0, 0.0)));
+//!     let solid = SdfcSolid::new(bowl).with("wall", 0.1);
+//!     commands.spawn((solid, Transform::from_xyz(0.0, 1.0, 0.0)));
 //! }
 //! ```
 //!

@@ -23,7 +23,8 @@ use crate::scene::SdfcScene;
 ///
 /// fn setup(mut commands: Commands, assets: Res<AssetServer>) {
 ///     let bowl = assets.load("bowl.sdf");
-///     commands.spawn((SdfcSolid::new(bowl).with("wall", 0.1), Transform::from_xyz(0.0, 1.0, 0.0)));
+///     let solid = SdfcSolid::new(bowl).with("wall", 0.1);
+///     commands.spawn((solid, Transform::from_xyz(0.0, 1.0, 0.0)));
 /// }
 ///
 /// fn widen(mut solids: Query<&mut SdfcSolid>, time: Res<Time>) {
@@ -91,8 +92,8 @@ impl SdfcSolid {
         }
     }
 
-    /// Sets a param by its name in the scene. In the next frame, [`SdfcStatus`] reports a wrong name
-    /// or value.
+    /// Sets a param by its name in the scene. In the next frame, [`SdfcStatus`] reports a wrong
+    /// name or value.
     pub fn set(&mut self, name: &str, value: impl Into<ParamValue>) {
         self.params.insert(name.to_owned(), value.into());
     }

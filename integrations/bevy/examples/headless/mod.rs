@@ -1,5 +1,7 @@
 //! Draws a Bevy app into an image, without a window, and reads the image back.
 
+#![allow(clippy::expect_used, reason = "what fails here ends the example or the test")]
+
 use std::sync::{Arc, Mutex};
 
 use bevy::app::{PanicHandlerPlugin, PluginsState, TerminalCtrlCHandlerPlugin};
