@@ -16,8 +16,8 @@
 //!
 //! The modules are named after the stages: `certify` derives promises, constants and the
 //! conservative field; `analytic` intersects rays without marching; `reroll` makes loops; `refute`
-//! tests clauses and finds films; `planar` makes the pixels of scenes of regions, which have no rays; `prepare`
-//! runs the passes in order.
+//! tests clauses and finds films; `planar` makes the pixels of scenes of regions, which have no
+//! rays; `prepare` runs the passes in order.
 //!
 //! # Limits
 //!
