@@ -15,7 +15,7 @@ use crate::refute::frames::axes;
 use crate::refute::probe::{Effort, Probe};
 
 /// Number of lines for each child of a shape.
-const LINES: usize = 48;
+const LINES: usize = 32;
 /// Evaluations that take about as long as making a tape.
 const PREPARATION: u64 = 50;
 

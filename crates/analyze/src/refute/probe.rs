@@ -23,6 +23,8 @@ const ITERATIONS: usize = 300;
 const BEYOND: f64 = 0.2;
 /// The least value on a film, as a fraction of the values beside it.
 const FILM: f64 = 1e-6;
+/// How much steeper than between two points of a line the field may be between them.
+const STEEPEST: f64 = 8.0;
 /// Half the sampled interval on an axis without bounds.
 const REACH: f64 = 2.0;
 /// Relative tolerances of constants and of distances. A promise that fails by less is not reported.
@@ -312,25 +314,27 @@ fn film_between(field: &mut Evaluator<'_, f64>, from: Point, to: Point) -> Optio
         if !(least > 0.0 && least <= before && least < after) {
             return None;
         }
-        // Where two faces coincide, rounding errors may give a tiny negative value.
-        let rounding = FILM * before.min(after);
-        let t = least_between(&mut at, [i - 1, i + 1].map(|i| i as f64 * step), -rounding)?;
-        (at(t) <= rounding).then(|| mix(from, to, t))
+        let ends = [i - 1, i + 1].map(|i| i as f64 * step);
+        zero_between(&mut at, ends, [before, after]).map(|t| mix(from, to, t))
     })
 }
 
-/// Where the field is least between two parameters of a line, by golden-section search. `None` if
-/// it is below the limit somewhere on the way.
-fn least_between(
+/// Where the field is 0 at its minimum between two parameters of a line, by golden-section search.
+/// `None` if it is negative somewhere on the way, or if only an unlikely slope could lead to 0.
+fn zero_between(
     at: &mut impl FnMut(f64) -> f64,
     [mut lo, mut hi]: [f64; 2],
-    limit: f64,
+    [before, after]: [f64; 2],
 ) -> Option<f64> {
     const GOLDEN: f64 = 0.618_033_988_749_894_9;
+    // Where two faces coincide, rounding errors may give a tiny negative value.
+    let rounding = FILM * before.min(after);
+    let steepest = STEEPEST * before.max(after) / (hi - lo);
     let [mut a, mut b] = [hi - GOLDEN * (hi - lo), lo + GOLDEN * (hi - lo)];
     let [mut at_a, mut at_b] = [at(a), at(b)];
     for _ in 0..NARROWINGS {
-        if at_a < limit || at_b < limit {
+        let least = at_a.min(at_b);
+        if least < -rounding || least > steepest * (hi - lo) + rounding {
             return None;
         }
         if at_a < at_b {
@@ -343,7 +347,7 @@ fn least_between(
             at_b = at(b);
         }
     }
-    Some(0.5 * (lo + hi))
+    (at_a.min(at_b) <= rounding).then_some(0.5 * (lo + hi))
 }
 
 fn mix(a: Point, b: Point, t: f64) -> Point {
