@@ -1,6 +1,6 @@
 //! Forward-mode differentiation.
 
-use super::{Body, Number};
+use super::Number;
 
 /// A number and its partial derivatives with respect to the coordinates of the point. `N` is `f64`,
 /// a packet of them for several points at once, or an interval for a box of points.
@@ -93,10 +93,6 @@ fn unless_zero<N: Number>(number: N, slope: N) -> N {
 
 impl<N: Number> Number for Dual<N> {
     const HAS_VECTORS: bool = N::HAS_VECTORS;
-
-    fn run(body: Body<'_, Self>) {
-        N::run_dual(body);
-    }
 
     #[inline(always)]
     fn constant(value: f64) -> Self {

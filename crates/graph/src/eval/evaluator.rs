@@ -4,9 +4,10 @@ use super::affine::Affine;
 use super::frame::FrameValues;
 use super::interval::{BranchPath, Interval};
 use super::number::Number;
-use super::registers::{Body, Registers};
+use super::registers::Registers;
 use super::scalarise::Lanes;
 use super::tape::{Definition, POINT_LANES, Tape};
+use super::tracer::{NoTrace, Tracer};
 
 impl Tape {
     /// An evaluator for a frame. Per-frame values are computed in f64 and then rounded to the
@@ -109,20 +110,20 @@ impl<N: Number> Evaluator<'_, N> {
     /// The roots' values at a point, in the roots' order. Lanes beyond a root's width are 0. For 2D
     /// shapes the last lane of the point is ignored.
     pub fn eval(&mut self, point: [N; 3]) -> &[[N; 4]] {
-        self.run(&[point]);
+        self.run(&[point], &mut NoTrace);
         self.read()
     }
 
     /// Like [`Self::eval`], for a tape made by [`Tape::for_rays`].
     pub fn eval_ray(&mut self, origin: [N; 3], direction: [N; 3]) -> &[[N; 4]] {
-        self.run(&[origin, direction]);
+        self.run(&[origin, direction], &mut NoTrace);
         self.read()
     }
 
     /// Like [`Self::eval`], for a tape made by [`Tape::for_surfaces`]. The normal and the direction
     /// to the eye are unit vectors.
     pub fn eval_surface(&mut self, point: [N; 3], normal: [N; 3], view: [N; 3]) -> &[[N; 4]] {
-        self.run(&[point, normal, view]);
+        self.run(&[point, normal, view], &mut NoTrace);
         self.read()
     }
 
@@ -141,7 +142,7 @@ impl<N: Number> Evaluator<'_, N> {
         points: &[[N; POINT_LANES]],
         outputs: &[Lanes<u32>],
     ) -> Vec<[N; 4]> {
-        self.run(points);
+        self.run(points, &mut NoTrace);
         let of = |lanes: &Lanes<u32>| {
             let mut values = [N::constant(0.0); 4];
             for (value, &register) in values.iter_mut().zip(lanes.as_slice()) {
@@ -154,7 +155,7 @@ impl<N: Number> Evaluator<'_, N> {
 
     /// The first lane of the first root at a point; 0 without roots.
     pub fn scalar(&mut self, point: [N; 3]) -> N {
-        self.run(&[point]);
+        self.run(&[point], &mut NoTrace);
         self.first()
     }
 
@@ -188,7 +189,7 @@ impl<N: Number> Evaluator<'_, N> {
                 }
             }
             self.registers.used = points.len();
-            N::run(self.body());
+            self.run_body(&mut NoTrace);
             let first = self.tape.outputs.first().map(|lanes| lanes.get(0) as usize * width);
             for (k, value) in values.iter_mut().enumerate() {
                 *value = first.map_or(N::constant(0.0), |first| self.registers.numbers[first + k]);
@@ -206,22 +207,20 @@ impl<N: Number> Evaluator<'_, N> {
         first.map_or(N::constant(0.0), |lanes| self.registers.get(lanes.get(0)))
     }
 
-    fn run(&mut self, points: &[[N; POINT_LANES]]) {
-        self.set_points(points);
-        N::run(self.body());
-    }
-
-    fn set_points(&mut self, points: &[[N; POINT_LANES]]) {
+    fn run(&mut self, points: &[[N; POINT_LANES]], tracer: &mut impl Tracer<N>) {
         let width = self.registers.width;
         self.registers.used = 1;
         let registers = self.registers.numbers.chunks_exact_mut(width).skip(self.tape.kept.len());
         for (register, &lane) in registers.zip(points.as_flattened()) {
             register[0] = lane;
         }
+        self.run_body(tracer);
     }
 
-    fn body(&mut self) -> Body<'_, N> {
-        Body { code: &self.tape.body, registers: &mut self.registers, lists: &self.tape.lists }
+    fn run_body(&mut self, tracer: &mut impl Tracer<N>) {
+        for code in &self.tape.body {
+            code.run(&mut self.registers, &self.tape.lists, tracer);
+        }
     }
 }
 
@@ -230,8 +229,7 @@ impl Evaluator<'_, Interval> {
     /// which jumps it leaves open.
     pub fn scalar_along(&mut self, point: [Interval; 3], path: &mut BranchPath) -> Interval {
         path.begin();
-        self.set_points(&[point]);
-        self.body().run_traced(&mut { path });
+        self.run(&[point], &mut { path });
         self.first()
     }
 }
@@ -241,8 +239,7 @@ impl Evaluator<'_, Affine> {
     /// jumps, without comparisons. The path records which jumps it leaves open.
     pub fn scalar_along(&mut self, point: [Affine; 3], path: &mut BranchPath) -> Affine {
         path.begin();
-        self.set_points(&[point]);
-        self.body().run_traced(&mut { path });
+        self.run(&[point], &mut { path });
         self.first()
     }
 }

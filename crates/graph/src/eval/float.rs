@@ -5,20 +5,12 @@
 //! `sign(0)` is 0, `pow` of a negative base is NaN. An undefined result is NaN or infinite. `min`
 //! and `max` return a NaN only if it is their first argument; WGSL leaves this open.
 
+use super::Number;
 use super::hash::hash;
-use super::{Body, Dual, Number};
 
 macro_rules! float {
     ($float:ident, pow: $pow:path, atan2: $atan2:path, $($name:ident: $unary:path),* $(,)?) => {
         impl Number for $float {
-            fn run(body: Body<'_, Self>) {
-                body.run();
-            }
-
-            fn run_dual(body: Body<'_, Dual<Self>>) {
-                body.run();
-            }
-
             #[inline(always)]
             fn constant(value: f64) -> Self {
                 value as Self

@@ -68,7 +68,6 @@ pub use hash::{HASH_COUNT, hash};
 pub use interval::{BranchPath, Interval};
 pub use number::Number;
 pub use packet::Packet;
-pub use registers::Body;
 pub use sample::{FieldSample, evaluate_frame, sample_field};
 pub use specialize::{FieldOver, RootsOver};
 pub use tape::{Tape, TapeError};

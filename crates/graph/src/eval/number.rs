@@ -1,7 +1,5 @@
 //! The number types in which a graph can be evaluated.
 
-use super::{Body, Dual};
-
 /// A number type: one method for each scalar operation of the closed set.
 ///
 /// Truth values are numbers: 0 is false, 1 is true (an undecided [`Interval`](super::Interval)
@@ -11,17 +9,6 @@ use super::{Body, Dual};
 pub trait Number: Copy {
     /// True if operations consist of vector instructions, which depend on the CPU.
     const HAS_VECTORS: bool = false;
-
-    /// Runs the code of a tape. The types that implement this themselves have their loop over
-    /// instructions compiled in this crate: with its optimisation, and once for all crates.
-    fn run(body: Body<'_, Self>) {
-        body.run();
-    }
-
-    /// As [`Self::run`], in dual numbers.
-    fn run_dual(body: Body<'_, Dual<Self>>) {
-        body.run();
-    }
 
     /// The number nearest to a constant.
     fn constant(value: f64) -> Self;

@@ -2,7 +2,7 @@
 
 use super::number::Number;
 use super::tape::{Code, Instruction, LoopCode};
-use super::tracer::{NoTrace, Tracer};
+use super::tracer::Tracer;
 use super::vectors::vectorized;
 
 /// Registers of `width` numbers, of which the first `used` ones are computed.
@@ -67,29 +67,9 @@ impl<N: Number> Registers<N> {
     }
 }
 
-/// The code that a tape runs at a point, and the registers that it runs on.
-pub struct Body<'a, N> {
-    pub(super) code: &'a [Code],
-    pub(super) registers: &'a mut Registers<N>,
-    pub(super) lists: &'a [Vec<f64>],
-}
-
-impl<N: Number> Body<'_, N> {
-    /// Runs the code. [`Number::run`] does that, too, where it was compiled for the number type.
-    pub fn run(self) {
-        self.run_traced(&mut NoTrace);
-    }
-
-    pub(super) fn run_traced(self, tracer: &mut impl Tracer<N>) {
-        for code in self.code {
-            code.run(self.registers, self.lists, tracer);
-        }
-    }
-}
-
 impl Code {
     /// Runs the code; returns the register of the condition if this is a test.
-    fn run<N: Number>(
+    pub(super) fn run<N: Number>(
         &self,
         registers: &mut Registers<N>,
         lists: &[Vec<f64>],

@@ -135,17 +135,6 @@ impl CpuScene {
         options: &RenderOptions,
         progress: &mut OnProgress<'_>,
     ) -> Result<Frame, RenderError> {
-        T::render(self, view, frame, method, options, progress)
-    }
-
-    fn draw_in<T: Real>(
-        &self,
-        view: &View,
-        frame: &FrameValues,
-        method: Method,
-        options: &RenderOptions,
-        progress: &mut OnProgress<'_>,
-    ) -> Result<Frame, RenderError> {
         if let Some(tape) = &self.planar_pixel {
             let cells = PlanarCells::new(tape, view, frame);
             let pixels = PlanarPixels::<T>::new(&cells, view, frame);
@@ -172,15 +161,6 @@ impl CpuScene {
     /// As [`Self::render`], but a gradient is not needed. [`RenderError::Planar`] if the program is
     /// planar.
     pub fn depth_map<T: Real>(
-        &self,
-        view: &View,
-        frame: &FrameValues,
-        method: Method,
-    ) -> Result<Image, RenderError> {
-        T::depth_map(self, view, frame, method)
-    }
-
-    fn trace_in<T: Real>(
         &self,
         view: &View,
         frame: &FrameValues,

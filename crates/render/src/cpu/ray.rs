@@ -2,14 +2,7 @@
 
 use std::ops::{Add, Mul, Sub};
 
-use sdfc_graph::eval::{Evaluator, FrameValues, Number, Packet};
-use sdfc_march::Method;
-
-use super::CpuScene;
-use crate::error::RenderError;
-use crate::frame::{Frame, OnProgress, RenderOptions};
-use crate::image::Image;
-use crate::view::View;
+use sdfc_graph::eval::{Evaluator, Number, Packet};
 
 /// The number of points evaluated together: enough that decoding an instruction costs little beside
 /// running it.
@@ -19,9 +12,6 @@ pub(super) const LANES: usize = 16;
 pub(super) type Batch<'t, T> = Evaluator<'t, Packet<T, LANES>>;
 
 /// The number type in which rays are marched: f32, as in the shader, or f64.
-///
-/// The renderer is compiled in this crate for each type: with its optimisation, and once for all
-/// crates.
 pub trait Real:
     Number
     + PartialOrd
@@ -32,54 +22,10 @@ pub trait Real:
     + Send
     + Sync
 {
-    /// See [`CpuScene::render_in`].
-    #[doc(hidden)]
-    fn render(
-        scene: &CpuScene,
-        view: &View,
-        frame: &FrameValues,
-        method: Method,
-        options: &RenderOptions,
-        progress: &mut OnProgress<'_>,
-    ) -> Result<Frame, RenderError>;
-
-    /// See [`CpuScene::depth_map`].
-    #[doc(hidden)]
-    fn depth_map(
-        scene: &CpuScene,
-        view: &View,
-        frame: &FrameValues,
-        method: Method,
-    ) -> Result<Image, RenderError>;
 }
 
-macro_rules! real {
-    ($($real:ident)*) => {$(
-        impl Real for $real {
-            fn render(
-                scene: &CpuScene,
-                view: &View,
-                frame: &FrameValues,
-                method: Method,
-                options: &RenderOptions,
-                progress: &mut OnProgress<'_>,
-            ) -> Result<Frame, RenderError> {
-                scene.draw_in::<Self>(view, frame, method, options, progress)
-            }
-
-            fn depth_map(
-                scene: &CpuScene,
-                view: &View,
-                frame: &FrameValues,
-                method: Method,
-            ) -> Result<Image, RenderError> {
-                scene.trace_in::<Self>(view, frame, method)
-            }
-        }
-    )*};
-}
-
-real! { f32 f64 }
+impl Real for f32 {}
+impl Real for f64 {}
 
 /// A ray with the cone that its pixel covers.
 #[derive(Clone, Copy, Debug)]

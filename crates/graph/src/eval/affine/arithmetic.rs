@@ -1,21 +1,13 @@
 //! The operations of the closed set.
 
 use super::{Affine, ROUNDING};
-use crate::eval::{Body, Dual, Interval, Number};
+use crate::eval::{Interval, Number};
 
 fn number(value: f64) -> Interval {
     Interval::constant(value)
 }
 
 impl Number for Affine {
-    fn run(body: Body<'_, Self>) {
-        body.run();
-    }
-
-    fn run_dual(body: Body<'_, Dual<Self>>) {
-        body.run();
-    }
-
     fn constant(value: f64) -> Self {
         Self::from_range(number(value))
     }

@@ -6,8 +6,8 @@ mod path;
 
 pub use path::BranchPath;
 
+use super::Number;
 use super::hash::{HASH_COUNT, hash};
-use super::{Body, Dual, Number};
 
 /// An interval: all numbers from `lo` to `hi`, in f64.
 ///
@@ -120,14 +120,6 @@ fn above(end: f64) -> f64 {
 }
 
 impl Number for Interval {
-    fn run(body: Body<'_, Self>) {
-        body.run();
-    }
-
-    fn run_dual(body: Body<'_, Dual<Self>>) {
-        body.run();
-    }
-
     fn constant(value: f64) -> Self {
         Self::new(value, value)
     }
