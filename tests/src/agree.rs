@@ -113,11 +113,8 @@ pub fn precisions(scene: &Scene) -> Result<(usize, Difference), Disagreement> {
         let hit = double.pixels().iter().filter(|pixel| pixel.status == HIT).count();
         return Ok((hit, planar_difference(&single, &double, "f32 and f64")?));
     }
-    let Depths { image: double, limit, view } = Depths::of(scene)?;
-    let frame = FrameValues::defaults(scene.params());
-    let marched = scene.marched_on_cpu(METHOD);
-    let cpu = CpuScene::new(&marched.program)?;
-    let single = cpu.depth_map::<f32>(&view, &frame, marched.method)?;
+    let Depths { cpu, method, frame, view, image: double, limit } = Depths::of(scene)?;
+    let single = cpu.depth_map::<f32>(&view, &frame, method)?;
     let hit = double.pixels().iter().filter(|pixel| pixel.status == HIT).count();
     if hit == 0 {
         return Err(Disagreement::TooLittle("nothing is seen".to_owned()));
@@ -184,7 +181,8 @@ fn without_cause(
 fn is_film(field: &mut Field<'_>, hit: DVec3, reach: f64) -> bool {
     let Some(foot) = foot(field, hit, reach) else { return false };
     let slope = DVec3::from_array(field.gradient(hit.to_array()).gradient);
-    let up = slope.normalize_or_zero() * 2.0 * reach;
+    let Some(up) = slope.try_normalize() else { return false };
+    let up = 2.0 * reach * up;
     [foot + up, foot - up].iter().all(|side| field.distance(side.to_array()) > 0.0)
 }
 
@@ -230,7 +228,7 @@ pub fn devices(scene: &Scene) -> Result<Difference, Disagreement> {
         planar_difference(&gpu, &double, "GPU and CPU in f64")?;
         return planar_difference(&gpu, &cpu, "GPU and CPU in f32");
     }
-    let Depths { image: double, limit, view } = Depths::of(scene)?;
+    let Depths { view, image: double, limit, .. } = Depths::of(scene)?;
     let without_films =
         |other, color| without_cause(scene, &view, [&gpu, other], (limit, color), is_film);
     let (cpu, double) = (without_films(&cpu, Some(COLOR))?, without_films(&double, None)?);
@@ -241,9 +239,12 @@ pub fn devices(scene: &Scene) -> Result<Difference, Disagreement> {
 
 /// The depths on the CPU in f64, and the largest difference from them that is allowed.
 struct Depths {
+    cpu: CpuScene,
+    method: Method,
+    frame: FrameValues,
+    view: View,
     image: Image,
     limit: f32,
-    view: View,
 }
 
 impl Depths {
@@ -251,10 +252,10 @@ impl Depths {
         let frame = FrameValues::defaults(scene.params());
         let view = scene.view(&frame, [SIDE; 2])?;
         let marched = scene.marched_on_cpu(METHOD);
-        let cpu = CpuScene::new(&marched.program)?;
-        let image = cpu.depth_map::<f64>(&view, &frame, marched.method)?;
+        let (cpu, method) = (CpuScene::new(&marched.program)?, marched.method);
+        let image = cpu.depth_map::<f64>(&view, &frame, method)?;
         let limit = depth_limit(&view, &image);
-        Ok(Self { image, limit, view })
+        Ok(Self { cpu, method, frame, view, image, limit })
     }
 }
 
