@@ -1,7 +1,8 @@
 //! The cost of one evaluation, counted on the graph.
 
 use sdfc_graph::{
-    Expander, Graph, LoopId, Node, NodeId, ShapeId, Stage, fold_transforms, reachable,
+    Expander, FormulaChoice, Graph, LoopId, Node, NodeId, ShapeId, Stage, fold_transforms,
+    reachable_by,
 };
 
 /// Counts of operations.
@@ -16,10 +17,10 @@ pub struct Cost {
     pub per_frame: usize,
 }
 
-/// The cost of evaluating `roots` together.
+/// The cost of evaluating `roots` together. Of values with two formulas, the one of shaders counts.
 pub fn cost(graph: &Graph, roots: &[NodeId]) -> Cost {
     let mut cost = Cost::default();
-    let nodes = reachable(graph, roots);
+    let nodes = reachable_by(graph, roots, FormulaChoice::Short);
     for &node in &nodes {
         cost.nodes += 1;
         if !is_arithmetic(&graph.node(node)) {
@@ -44,7 +45,7 @@ pub(crate) fn operations_outside_loops(graph: &Graph, roots: &[NodeId]) -> usize
             && graph.loops_around(node) == 0
             && is_arithmetic(&graph.node(node))
     };
-    reachable(graph, roots).into_iter().filter(is_counted).count()
+    reachable_by(graph, roots, FormulaChoice::Short).into_iter().filter(is_counted).count()
 }
 
 /// The cost of evaluating shapes by themselves, each at its own point and without loops that stand

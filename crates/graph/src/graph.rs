@@ -441,7 +441,8 @@ pub(crate) fn result_type(node: &Node, ty: impl Fn(NodeId) -> Type) -> Type {
             | Binary::Atan2
             | Binary::Step
             | Binary::Hash
-            | Binary::Cross => ty(a),
+            | Binary::Cross
+            | Binary::Alternative => ty(a),
         },
         Node::Ternary(Ternary::Select, [_, yes, _]) => ty(yes),
         Node::Ternary(_, [a, ..]) => ty(a),

@@ -21,7 +21,7 @@ impl Graph {
         if let Node::Loop(id, ..) = self.node(id) {
             self.loop_inputs(id)
         } else {
-            self.arguments(id).collect()
+            self.evaluated_arguments(id).collect()
         }
     }
 
@@ -70,7 +70,8 @@ impl Graph {
                 found.push(id);
             }
             // A nested loop may read nodes that no other node of this body reads.
-            pending.extend(self.arguments(id).filter(|&id| self.loops_around(id) >= bit));
+            let arguments = self.evaluated_arguments(id);
+            pending.extend(arguments.filter(|&id| self.loops_around(id) >= bit));
         }
         found.sort_unstable();
         found

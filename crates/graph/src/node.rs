@@ -240,6 +240,10 @@ pub enum Binary {
     Ne,
     And,
     Or,
+    /// Two formulas of one value, equal up to rounding. Shaders compute the first, which is shorter
+    /// at a point; everything else takes the second, whose bounds over a box are closer. See
+    /// [`Graph::choose_formulas`](crate::Graph::choose_formulas).
+    Alternative,
 }
 
 /// Operations on three arguments.

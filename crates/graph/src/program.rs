@@ -4,6 +4,7 @@ use rustc_hash::FxHashMap;
 
 use crate::FAR;
 use crate::enclose::{slope_enclosure, tight_enclosure};
+use crate::formulas::FormulaChoice;
 use crate::graph::Graph;
 use crate::guard::{Guard, guarded_field};
 use crate::loops::SkipCondition;
@@ -149,6 +150,44 @@ impl Program {
         }
         program.uniforms = uniforms(&program.graph, &program.roots());
         program
+    }
+
+    /// The program with one of the formulas wherever a value has two.
+    pub fn by_formulas(&self, choice: FormulaChoice) -> Self {
+        let mut program = self.clone();
+        let new = program.graph.choose_formulas(&self.roots(), choice);
+        program.map_nodes(|id| new.get(id).unwrap_or(id));
+        program
+    }
+
+    /// Replaces all nodes that [`Self::roots`] returns, and those that belong to them.
+    fn map_nodes(&mut self, new: impl Fn(NodeId) -> NodeId) {
+        let map = |node: &mut NodeId| *node = new(*node);
+        let Rays { first_hit, analytic, marched, clip, copies } = &mut self.rays;
+        let fields = [
+            &mut self.distance,
+            &mut self.gradient,
+            &mut self.planar_pixel,
+            &mut self.range,
+            &mut self.slope_range,
+            first_hit,
+            analytic,
+            marched,
+            clip,
+            copies,
+        ];
+        fields.into_iter().flatten().for_each(map);
+        let materials = [&mut self.material, &mut self.seen_material];
+        materials.into_iter().flatten().flatten().for_each(map);
+        for guard in &mut self.guards {
+            [&mut guard.operand, &mut guard.bound].into_iter().for_each(map);
+        }
+        for looped in &mut self.cullable_loops {
+            let SkipCondition { operand, margin } = &mut looped.skip;
+            [operand, margin, &mut looped.culling_bounds].into_iter().for_each(map);
+        }
+        let names = std::mem::take(&mut self.names);
+        self.names = names.into_iter().map(|(node, name)| (new(node), name)).collect();
     }
 
     /// The program with fields that have the same values, but evaluate a guarded operand only where

@@ -168,6 +168,7 @@ fn binary(op: Binary, a: Range, b: Range) -> Range {
         Binary::Div => a.mul(b.reciprocal()),
         Binary::Min => a.min(b),
         Binary::Max => a.max(b),
+        Binary::Alternative => b,
         Binary::Rem if b.lo >= 0.0 => Range::new(0.0, b.hi),
         Binary::Pow if a.lo >= 0.0 => Range::NON_NEGATIVE,
         Binary::Atan2 => Range::new(-std::f64::consts::PI, std::f64::consts::PI),

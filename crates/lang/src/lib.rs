@@ -34,6 +34,7 @@
 
 pub mod arcs;
 pub mod assets;
+pub mod cells;
 mod check;
 pub mod elab;
 pub mod environment;

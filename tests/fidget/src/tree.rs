@@ -141,6 +141,7 @@ fn binary(operation: Binary, a: &[Tree], b: &[Tree]) -> Result<Vec<Tree>> {
         Binary::Pow => lanes(|a, b| (a.ln() * b.clone()).exp()),
         Binary::Atan2 => lanes(|a, b| a.atan2(b.clone())),
         Binary::Step => lanes(|edge, x| less(x, edge).not()),
+        Binary::Alternative => b.to_vec(),
         Binary::Dot => vec![sum(a.iter().zip(b).map(|(a, b)| a.clone() * b.clone()))],
         Binary::Cross => (0..3)
             .map(|lane| {

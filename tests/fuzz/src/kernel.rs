@@ -81,9 +81,11 @@ pub const SIGNATURES: &[&str] = &[
 ];
 
 /// Names that the generator leaves out.
-pub const LEFT_OUT: [(&str, &str); 2] = [
+pub const LEFT_OUT: [(&str, &str); 4] = [
     ("glyph_curves", "only `text` of the library uses it"),
     ("polygon_edges", "only `polygon` of the library uses it"),
+    ("outline_cells", "only `text` and `polygon` of the library use it"),
+    ("alternative", "both formulas must have the same value"),
 ];
 
 /// Returns true if the arguments of a kernel function have names.

@@ -1,7 +1,7 @@
 //! The functions of a scene by themselves, for those who embed them.
 
 use naga::{Function, Handle, Module, ResourceBinding, Span, StructMember, TypeInner};
-use sdfc_graph::{Graph, MaterialField, NodeId, Program, Type};
+use sdfc_graph::{FormulaChoice, Graph, MaterialField, NodeId, Program, Type};
 use sdfc_march::{Features, Method, MethodDefinition, ray_source, stubs};
 
 use super::bindings::{StubBinding, analytic_bindings, segment_bindings};
@@ -55,6 +55,7 @@ fn functions(
     if program.is_planar() && method.is_some() {
         return Err(Error::Planar("a function of a ray"));
     }
+    let program = program.by_formulas(FormulaChoice::Bounded);
     let distance = program.distance.ok_or(Error::NothingDrawn)?;
     let mut program = program.guarded();
     let field = program.distance.unwrap_or(distance);

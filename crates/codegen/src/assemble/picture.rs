@@ -1,7 +1,7 @@
 //! The shaders of pictures.
 
 use naga::ResourceBinding;
-use sdfc_graph::{Program, Settings};
+use sdfc_graph::{FormulaChoice, Program, Settings};
 use sdfc_march::{Features, FieldSource, Form, Method, MethodDefinition, source_with, stubs};
 
 use super::bindings::{LISTS, SLOTS, StubBinding};
@@ -104,7 +104,8 @@ fn link_benchmark(
     if program.is_planar() {
         return Err(Error::Planar("a benchmark"));
     }
-    let (program, method) = (&program.guarded(), method.definition());
+    let method = method.definition();
+    let program = &program.by_formulas(FormulaChoice::Short).guarded();
     let distance = match field {
         FieldSource::Scene => return link_picture(program, Form::Compute, method, None),
         FieldSource::Distance => Some(program.distance.ok_or(Error::NothingDrawn)?),
@@ -151,7 +152,8 @@ fn link_benchmark(
 /// [`Error::BadPrefix`]; others as [`render_module`].
 pub fn picture_module(program: &Program, options: &PictureOptions) -> Result<Shader, Error> {
     check_prefix(&options.prefix)?;
-    let (program, method) = (&program.guarded(), options.method.definition());
+    let method = options.method.definition();
+    let program = &program.by_formulas(FormulaChoice::Bounded).guarded();
     let form = match options.stage {
         Stage::Compute => Form::Compute,
         Stage::Fragment if options.rows_up => Form::FragmentUp,
@@ -186,7 +188,7 @@ fn link_picture(
     method: &MethodDefinition,
     parallel: Option<bool>,
 ) -> Result<Shader, Error> {
-    let program = &program.guarded();
+    let program = &program.by_formulas(FormulaChoice::Short).guarded();
     let mut picture = PictureLinker::new(program, form, method, parallel, &[], true)?;
     let (inputs, load_frame) = declare_slots(&mut picture.module, program, &picture.used, SLOTS);
     if let Some(load_frame) = load_frame {

@@ -5,7 +5,7 @@ use naga::{
     Scalar, Span, Statement, TypeInner,
 };
 use rustc_hash::{FxHashMap, FxHashSet};
-use sdfc_graph::{Camera, FrameInput, Lens, Node, NodeId, Program, Type};
+use sdfc_graph::{Camera, FormulaChoice, FrameInput, Lens, Node, NodeId, Program, Type};
 use sdfc_march::{Form, Method, stubs};
 
 use super::linker::PictureLinker;
@@ -28,7 +28,7 @@ const SET_BY_CAMERA: [&str; 5] = ["forward", "right", "up", "pixel_radius", "siz
 ///
 /// As [`crate::render_module`]; [`Error::ViewBytes`].
 pub fn shadertoy_module(program: &Program, method: Method, view: &[u8]) -> Result<Shader, Error> {
-    let program = &program.guarded();
+    let program = &program.by_formulas(FormulaChoice::Bounded).guarded();
     let mut picture = PictureLinker::new(
         program,
         Form::Shadertoy,

@@ -98,7 +98,8 @@ impl Lowering<'_> {
             Binary::Pow => return Ok(self.body.call2(MathFunction::Pow, a, b)),
             Binary::Atan2 => return Ok(self.body.call2(MathFunction::Atan2, a, b)),
             Binary::Step => return Ok(self.body.call2(MathFunction::Step, a, b)),
-            Binary::Hash => return Err(Error::IllTyped(id)), // lowered by itself
+            // Lowered by itself, and replaced by one of its formulas.
+            Binary::Hash | Binary::Alternative => return Err(Error::IllTyped(id)),
             Binary::Dot => return Ok(self.body.call2(MathFunction::Dot, a, b)),
             Binary::Cross => return Ok(self.body.call2(MathFunction::Cross, a, b)),
         };
@@ -236,7 +237,8 @@ fn takes(op: Binary, ty: Type) -> bool {
         | Binary::Pow
         | Binary::Atan2
         | Binary::Step
-        | Binary::Hash => ty != Type::Bool,
+        | Binary::Hash
+        | Binary::Alternative => ty != Type::Bool,
         Binary::Dot => types::vector_size(ty).is_some(),
         Binary::Cross => ty == Type::Vec3,
         Binary::Lt | Binary::Le => ty == Type::Scalar,

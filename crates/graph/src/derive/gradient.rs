@@ -2,8 +2,9 @@
 
 use super::{loops, parts, sweep};
 use crate::dump::operation_count;
+use crate::formulas::FormulaChoice;
 use crate::graph::Graph;
-use crate::node::NodeId;
+use crate::node::{Binary, NodeId};
 use crate::schedule::live_lanes;
 
 /// The number of live lanes up to which fewer gain nothing: the rest of a picture's shader needs
@@ -55,7 +56,20 @@ pub fn gradient_in_parts(
 /// Returns the gradient of a scalar with respect to a point: of one reverse sweep and of sums over
 /// parts, the one that keeps the fewest lanes alive, and of equals the one with the fewest
 /// operations.
+///
+/// A value with two formulas has a gradient of each; the report is about that of shaders.
 pub fn best_gradient(graph: &mut Graph, root: NodeId, point: NodeId) -> (NodeId, GradientReport) {
+    let short = graph.with_formulas(root, FormulaChoice::Short);
+    let bounded = graph.with_formulas(root, FormulaChoice::Bounded);
+    let (found, report) = best_of(graph, short, point);
+    if short == bounded {
+        return (found, report);
+    }
+    let (other, _) = best_of(graph, bounded, point);
+    (graph.binary(Binary::Alternative, found, other), report)
+}
+
+fn best_of(graph: &mut Graph, root: NodeId, point: NodeId) -> (NodeId, GradientReport) {
     let sweep = gradient(graph, root, point);
     let live_lanes_of_sweep = live_lanes(graph, &[sweep]);
     let mut report =

@@ -164,6 +164,7 @@ impl Sweep<'_> {
             }
             Binary::Min => self.selection([a, b], [a, b], id, adjoint),
             Binary::Max => self.selection([a, b], [b, a], id, adjoint),
+            Binary::Alternative => self.accumulate(b, adjoint),
             Binary::Pow => self.power(id, [a, b], adjoint),
             Binary::Atan2 => self.angle([a, b], adjoint),
             Binary::Dot if a == b => self.accumulate_with(a, |s| {

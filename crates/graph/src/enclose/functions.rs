@@ -99,6 +99,7 @@ impl Encloser<'_> {
                 let (x, y) = (self.interval(x), self.interval(y));
                 self.monotone2(op, x, y).into()
             }
+            Binary::Alternative => y,
             Binary::Pow => self.per_lane([x, y], |s, [x, y]| s.power(x, y)),
             Binary::Atan2 => self.per_lane([x, y], |s, [y, x]| s.angle(y, x)),
             Binary::Step => {

@@ -150,6 +150,7 @@ impl Encloser<'_> {
             }
             Binary::Min => Some(self.slope_by(x, y, x, y)),
             Binary::Max => Some(self.slope_by(y, x, x, y)),
+            Binary::Alternative => y.slope,
             Binary::Pow => self.power_slope(x, y, result),
             Binary::Atan2 => self.angle_slope(x, y),
             Binary::Step | Binary::Hash => {

@@ -5,10 +5,11 @@ use rustc_hash::FxHashMap;
 use super::record::Recorder;
 use super::scalarise::{Lanes, scalarise};
 use super::tape::{Tape, TapeError};
+use crate::formulas::{FormulaChoice, reachable_by};
 use crate::graph::Graph;
 use crate::ids::IdSet;
-use crate::node::{LoopId, LoopVar, Node, NodeId};
-use crate::walk::{reachable, reachable_where};
+use crate::node::{Binary, LoopId, LoopVar, Node, NodeId};
+use crate::walk::visited;
 
 impl Tape {
     /// The tape that computes the roots, in their order.
@@ -16,7 +17,7 @@ impl Tape {
     /// Fails if a root depends on anything but operations, per-frame inputs and the outermost
     /// point.
     pub fn new(graph: &Graph, roots: &[NodeId]) -> Result<Self, TapeError> {
-        Self::record(graph, Recorder::default(), &reachable(graph, roots), roots)
+        Self::record(graph, Recorder::default(), &evaluated(graph, roots), roots)
     }
 
     /// The tape that computes functions of a ray: the outermost point is its origin, the point of
@@ -24,7 +25,7 @@ impl Tape {
     ///
     /// Fails if a root depends on anything but operations, per-frame inputs and these points.
     pub fn for_rays(graph: &Graph, roots: &[NodeId]) -> Result<Self, TapeError> {
-        Self::record(graph, Recorder::of_levels(2), &reachable(graph, roots), roots)
+        Self::record(graph, Recorder::of_levels(2), &evaluated(graph, roots), roots)
     }
 
     /// The tape that computes functions of a surface: the outermost point is that of the surface,
@@ -32,7 +33,7 @@ impl Tape {
     ///
     /// Fails if a root depends on anything but operations, per-frame inputs and these points.
     pub fn for_surfaces(graph: &Graph, roots: &[NodeId]) -> Result<Self, TapeError> {
-        Self::record(graph, Recorder::of_levels(3), &reachable(graph, roots), roots)
+        Self::record(graph, Recorder::of_levels(3), &evaluated(graph, roots), roots)
     }
 
     /// The tape of an operator as a function of its samples, independent of the point.
@@ -50,7 +51,11 @@ impl Tape {
         let params = samples.iter().zip(first..).map(|(&id, param)| (graph.node(id), param));
         let recorder = Recorder::for_operator(params.collect());
         let inputs: IdSet = samples.iter().copied().collect();
-        let order = reachable_where(graph, &[root], |id| !inputs.contains(id));
+        let order = visited(&[root], |id, pending| {
+            if !inputs.contains(id) {
+                pending.extend(graph.evaluated_arguments(id));
+            }
+        });
         Self::record(graph, recorder, &order, &[root])
     }
 
@@ -66,6 +71,10 @@ impl Tape {
         let outputs = roots.iter().map(|root| recording.lanes[root]).collect();
         Ok(recorder.finish(outputs))
     }
+}
+
+fn evaluated(graph: &Graph, roots: &[NodeId]) -> Vec<NodeId> {
+    reachable_by(graph, roots, FormulaChoice::Bounded)
 }
 
 /// Nodes that are being recorded.
@@ -94,6 +103,7 @@ impl<'a> Recording<'a> {
                     let (at, table) = (self.lanes[&at].get(0), self.graph.table(table));
                     Lanes::new(ty.width(), |lane| self.recorder.lookup(table.lane(lane), at))
                 }
+                Node::Binary(Binary::Alternative, _, bounded) => self.lanes[&bounded],
                 Node::Variable(..) => continue, // defined when its loop was entered
                 Node::Const(_)
                 | Node::Point(..)

@@ -165,6 +165,7 @@ fn binary<M: ScalarBackend>(
         Binary::Ne => Op::Ne,
         Binary::And => Op::And,
         Binary::Or => Op::Or,
+        Binary::Alternative => return b,
         Binary::Dot => return Lanes::scalar(sum_of_products(backend, a.values, b)),
         Binary::Cross => {
             return Lanes::new(Type::Vec3.width(), |i| {

@@ -192,7 +192,8 @@ impl Graph {
             | Binary::Eq
             | Binary::Ne
             | Binary::And
-            | Binary::Or => return None,
+            | Binary::Or
+            | Binary::Alternative => return None,
         };
         let [first, second] = tied;
         if (yes, no) == (a, b) {

@@ -116,7 +116,8 @@ impl Graph {
             | Binary::Dot
             | Binary::Cross
             | Binary::And
-            | Binary::Or => None,
+            | Binary::Or
+            | Binary::Alternative => None,
         }
     }
 

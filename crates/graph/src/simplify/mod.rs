@@ -132,6 +132,7 @@ impl Graph {
             Binary::Le => self.simplified_le(a, b),
             Binary::Eq | Binary::Ne => self.simplified_equality(op, a, b),
             Binary::And | Binary::Or => self.simplified_connective(op, a, b),
+            Binary::Alternative => (a == b).then_some(b),
             Binary::Rem | Binary::Atan2 | Binary::Hash => None,
         }
     }
@@ -305,7 +306,8 @@ fn is_lanewise(op: Binary) -> bool {
         | Binary::Pow
         | Binary::Atan2
         | Binary::Step
-        | Binary::Hash => true,
+        | Binary::Hash
+        | Binary::Alternative => true,
         Binary::Dot
         | Binary::Cross
         | Binary::Lt

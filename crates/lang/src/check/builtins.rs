@@ -101,6 +101,24 @@ impl<'a> Checker<'a> {
                 let pieces = list(list(Type::Vec(2)));
                 kernel(Kernel::PolygonEdges, arguments, pieces, callee.span)
             }
+            Builtin::OutlineCells => {
+                let parameters = [
+                    parameter("pieces", list(list(Type::Vec(2))), false),
+                    parameter("corner", Type::Vec(2), false),
+                    parameter("side", Type::Number, false),
+                    parameter("counts", Type::Vec(2), false),
+                ];
+                let arguments = self.all_arguments(callee, &parameters, given);
+                kernel(Kernel::OutlineCells, arguments, list(list(Type::Int)), callee.span)
+            }
+            Builtin::Alternative => {
+                let parameters = [
+                    parameter("short", Type::Number, false),
+                    parameter("bounded", Type::Number, false),
+                ];
+                let arguments = self.all_arguments(callee, &parameters, given);
+                kernel(Kernel::Alternative, arguments, Type::Number, callee.span)
+            }
         }
     }
 

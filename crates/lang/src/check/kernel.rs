@@ -52,6 +52,10 @@ pub(super) enum Builtin {
     GlyphCurves,
     /// `polygon_edges`
     PolygonEdges,
+    /// `outline_cells`
+    OutlineCells,
+    /// `alternative`
+    Alternative,
 }
 
 /// A componentwise function.
@@ -203,6 +207,8 @@ pub(crate) const ROWS: &[Row] = rows! {
     }
     "polygons" {
         "polygon_edges" Builtin::PolygonEdges, "polygon_edges(points)", "The boundary of the area that a closed polygon fills by the even-odd rule, for the library's `polygon`. Edges are cut where they cross; pieces that coincide cancel each other. The list has the form of `glyph_curves`: [start, middle, end, [s, e]], with the inside on the left. It is empty if a corner depends on a param, or if there are more than 4,096 corners.", "len(polygon_edges([[0, 0], [1, 0], [0, 1]]))";
+        "outline_cells" Builtin::OutlineCells, "outline_cells(pieces, corner, side, counts)", "Which pieces of an outline may be nearest to a point, for the library's `text` and `polygon`. The pieces have the form of `glyph_curves`. Square cells with this side begin at the corner: counts[0] columns and counts[1] rows, together at most 65,536 cells. The result is [starts, items, [most]]: the pieces of cell k are items[starts[k]] to items[starts[k + 1] - 1], and no cell has more than `most`; cells are counted row by row from the lowest one. Cells of five rings around them follow: see `_cell` in the library.", "len(outline_cells(glyph_curves(\"a\"), [0, 0], 0.1, [5, 6]))";
+        "alternative" Builtin::Alternative, "alternative(short, bounded)", "Two formulas of one number, for the library's `text` and `polygon`. Shaders compute the first, which should be the shorter one at a point; everything else takes the second, whose bounds over a box should be close. Nothing checks that they are equal.", "alternative(1, 1)";
     }
 };
 
@@ -228,6 +234,8 @@ pub fn takes_first(name: &str, ty: &Type) -> bool {
         Builtin::Color(_) => matches!(ty, Type::Number | Type::Int | Type::Vec(3)),
         Builtin::GlyphCurves => *ty == Type::Text,
         Builtin::PolygonEdges => *ty == list(Type::Vec(2)),
+        Builtin::OutlineCells => *ty == list(list(Type::Vec(2))),
+        Builtin::Alternative => *ty == Type::Number,
         Builtin::Str => *ty == Type::Text || is_scalar(ty),
     }
 }

@@ -364,6 +364,8 @@ fn constant(builtin: Builtin) -> Option<(ExprKind, Type)> {
         | Builtin::Color(_)
         | Builtin::Soft
         | Builtin::GlyphCurves
-        | Builtin::PolygonEdges => None,
+        | Builtin::PolygonEdges
+        | Builtin::OutlineCells
+        | Builtin::Alternative => None,
     }
 }

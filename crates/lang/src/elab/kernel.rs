@@ -107,6 +107,8 @@ impl<'p> Elaborator<'p> {
             Kernel::Hard => Ok(Value::Shadow(Shadow::Hard)),
             Kernel::GlyphCurves => self.glyph_curves(env, at),
             Kernel::PolygonEdges => self.polygon_edges(env, at),
+            Kernel::OutlineCells => self.outline_cells(env, at),
+            Kernel::Alternative => self.binary(env, at, Binary::Alternative, Swapped::No),
             Kernel::Soft => {
                 let [sharpness] = self.numbers(env, at.args)?;
                 Ok(Value::Shadow(Shadow::Soft(sharpness)))

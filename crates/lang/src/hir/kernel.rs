@@ -118,6 +118,11 @@ pub enum Kernel {
     /// Argument: the corners of a polygon, a list of vectors. Gives a list of edges in the form of
     /// `GlyphCurves`.
     PolygonEdges,
+    /// Arguments: pieces in the form of `GlyphCurves`, the corner of the box around them, the side
+    /// of a cell, and the numbers of columns and rows. Gives two lists of numbers.
+    OutlineCells,
+    /// Arguments: two formulas of one number.
+    Alternative,
     /// Argument: sharpness.
     Soft,
 }

@@ -340,6 +340,10 @@ impl Verifier<'_> {
             Kernel::PolygonEdges => {
                 assert_eq!(types, [Type::List(Box::new(Type::Vec(2)))]);
             }
+            Kernel::OutlineCells => {
+                let pieces = Type::List(Box::new(Type::List(Box::new(Type::Vec(2)))));
+                assert_eq!(types, [pieces, Type::Vec(2), Type::Number, Type::Vec(2)]);
+            }
             // All others are componentwise or map vectors to vectors.
             _ => assert!(types.iter().all(|other| other == ty), "{kernel:?} {types:?} {ty:?}"),
         }

@@ -79,6 +79,7 @@ impl Slopes {
                 }
                 Ok(hypotenuse(graph, &[x, y]))
             }
+            Binary::Alternative => self.constant(b),
             Binary::Mul => self.product(graph, a, b),
             Binary::Div => self.quotient(graph, a, b),
             Binary::Dot => Err(Reason::Unbounded("dot")),

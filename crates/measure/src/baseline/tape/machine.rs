@@ -194,6 +194,7 @@ fn binary(op: Binary, a: NodeId, b: NodeId, width: usize) -> Result<Vec<Step>, I
             Do(Operation::Mul, 0),
             Do(Operation::Sub, 0),
         ],
+        Binary::Alternative => vec![Value(b)],
         Binary::Min => both(Operation::Min, 0),
         Binary::Max | Binary::Or => both(Operation::Max, 0),
         Binary::Step => not_less(b, a),
