@@ -58,7 +58,7 @@ fn infinite_recursion_is_refused() {
 
 #[test]
 fn exponential_work_is_refused() {
-    let limit = "10000000 evaluation steps";
+    let limit = "40000000 evaluation steps";
     let twice =
         "fn f(n: int) -> number = if n == 0 { 1 } else { f(n - 1) + f(n - 1) }\nsphere(f(60))";
     stopped(twice, "E0406", limit);
@@ -91,7 +91,7 @@ fn shared_shapes_at_few_points_are_compiled() {
 fn long_sequences_are_refused() {
     stopped("let a = [for i in 0..1000000000: i]\nsphere(a[0])", "E0406", "the limit is 1000000");
     let cube = "union(for i in 0..1000: union(for j in 0..1000: union(for k in 0..1000: sphere(i + j + k))))";
-    stopped(cube, "E0406", "10000000 evaluation steps");
+    stopped(cube, "E0406", "40000000 evaluation steps");
 }
 
 #[test]

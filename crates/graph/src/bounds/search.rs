@@ -7,7 +7,7 @@ use crate::node::{Dim, NodeId};
 
 /// Scalar operations that a search may spend, and its minimum and maximum number of evaluations.
 const OPERATIONS: usize = 400_000;
-const LEAST_EVALUATIONS: usize = 32;
+const LEAST_EVALUATIONS: usize = 512;
 const MOST_EVALUATIONS: usize = 8_000;
 
 /// Evaluations that may be spent on one slab, per pass.
@@ -72,10 +72,7 @@ impl Search {
         for (pass, per_slab) in PER_SLAB.into_iter().enumerate() {
             let before = work.region;
             work.per_slab = per_slab;
-            for axis in 0..self.width {
-                work.shave(axis, Side::Upper);
-                work.shave(axis, Side::Lower);
-            }
+            work.shave_all(self.width);
             // The first pass has few evaluations per slab, so its failure says little.
             if pass > 0 && !has_shrunk(before, work.region) {
                 break;
@@ -131,6 +128,18 @@ impl Work<'_> {
                 self.region[axis] = face;
                 return;
             }
+        }
+    }
+
+    /// Moves all faces inwards. Each may take an equal share of the evaluations that are left, so
+    /// that none of them takes all.
+    fn shave_all(&mut self, width: usize) {
+        let faces = (0..width).flat_map(|axis| [(axis, Side::Upper), (axis, Side::Lower)]);
+        for (done, (axis, side)) in faces.enumerate() {
+            let share = self.budget / (2 * width - done);
+            let others = std::mem::replace(&mut self.budget, share) - share;
+            self.shave(axis, side);
+            self.budget += others;
         }
     }
 

@@ -5,7 +5,7 @@ pub const MAX_TEXT_BYTES: usize = 16_384;
 /// The largest number of graph nodes of a scene.
 pub const MAX_NODES: usize = 1_000_000;
 /// The largest number of expressions that are evaluated, counting repetitions.
-pub const MAX_STEPS: u64 = 10_000_000;
+pub const MAX_STEPS: u64 = 40_000_000;
 /// The largest number of active calls of one function.
 pub const MAX_RECURSION: u32 = 64;
 /// The largest nesting depth of shapes.
