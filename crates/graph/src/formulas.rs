@@ -1,8 +1,8 @@
 //! Alternative formulas of one value, and the choice between them.
 //!
 //! A value may have a formula that is short at a point and another one with close bounds over a
-//! box. An outline is an example: at a point, a table tells which pieces may be nearest; over a box,
-//! each piece has its bounds. [`Binary::Alternative`] holds both.
+//! box. An outline is an example: at a point, a table tells which pieces may be nearest; over a
+//! box, each piece has its bounds. [`Binary::Alternative`] holds both.
 
 use crate::graph::Graph;
 use crate::ids::IdMap;
@@ -18,9 +18,8 @@ pub enum FormulaChoice {
     Bounded,
 }
 
-/// The nodes that the roots are computed from by the chosen formulas, in ascending order. Where both
-/// formulas are the same, these are the nodes of
-/// [`reachable`](crate::reachable).
+/// The nodes that the roots are computed from by the chosen formulas, in ascending order. If no
+/// value has two formulas, these are the nodes of [`reachable`](crate::reachable).
 pub fn reachable_by(graph: &Graph, roots: &[NodeId], choice: FormulaChoice) -> Vec<NodeId> {
     visited(roots, |id, pending| pending.extend(graph.arguments_by(id, choice)))
 }

@@ -91,7 +91,7 @@ fn shared_shapes_at_few_points_are_compiled() {
 fn long_sequences_are_refused() {
     stopped("let a = [for i in 0..1000000000: i]\nsphere(a[0])", "E0406", "the limit is 1000000");
     let cube = "union(for i in 0..1000: union(for j in 0..1000: union(for k in 0..1000: sphere(i + j + k))))";
-    stopped(cube, "E0406", "40000000 evaluation steps");
+    stopped(cube, "E0406", "1000000 graph nodes");
 }
 
 #[test]

@@ -27,9 +27,9 @@ impl<'p> Elaborator<'p> {
         Ok(self.pieces(polygon::boundary(&corners)))
     }
 
-    /// `outline_cells(pieces, corner, side, counts)`: the indices of the first items of all cells and
-    /// of their end, the items, and the largest number of items of a cell. Empty lists if an
-    /// argument is not constant, or no layout.
+    /// `outline_cells(pieces, corner, side, counts)`: the indices of the first items of all cells
+    /// and of their end, the items, and the largest number of items of a cell. Without any cell if
+    /// an argument is not constant, or not allowed.
     pub(super) fn outline_cells(
         &mut self,
         env: &mut Env<'p>,

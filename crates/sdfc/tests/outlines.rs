@@ -1,0 +1,107 @@
+//! Outlines of many pieces have two formulas of one distance: by cells for shaders, by runs of
+//! pieces for everything else.
+
+#![allow(clippy::expect_used, reason = "a test stops where it fails")]
+
+use sdfc::{Compiler, FrameValues, Scene};
+use sdfc_graph::eval::Tape;
+use sdfc_graph::{Binary, FormulaChoice, Node, Program, reachable};
+
+/// Points for each scene and reach.
+const POINTS: usize = 400;
+/// Half the sides of squares of points, in scene units. Outlines are about one unit large.
+const REACHES: [f64; 5] = [0.6, 1.5, 8.0, 300.0, 1e5];
+/// Error of a distance and of a slope, as a fraction of the reach.
+const PRECISION: f64 = 1e-12;
+
+const SCENES: [&str; 5] = [
+    "text(\"8\")",
+    "text(\"Ag&% fi\", size: 0.3, align: \"center\")",
+    "text(\"I\")",
+    "param size = 0.5 in 0.1..1\ntext(\"two\\nlines\", size: size)",
+    "polygon([for i in 0..90: (0.5 + 0.3 * cos(7 * i)) * [cos(i * 4deg), sin(i * 4deg)]])",
+];
+
+fn compiled(source: &str) -> Scene {
+    Compiler::new().compile("scene", source).expect("the scene compiles")
+}
+
+fn has_alternative(program: &Program) -> bool {
+    let is_alternative =
+        |id| matches!(program.graph.node(id), Node::Binary(Binary::Alternative, ..));
+    reachable(&program.graph, &program.roots()).into_iter().any(is_alternative)
+}
+
+/// The distance and its gradient at some points.
+fn values(program: &Program, points: &[[f64; 2]]) -> Vec<[f64; 3]> {
+    let roots = [program.distance.expect("a distance"), program.gradient.expect("a gradient")];
+    let tape = Tape::new(&program.graph, &roots).expect("flat math");
+    let mut evaluator = tape.prepare::<f64>(&FrameValues::defaults(&program.params));
+    let value = |&[x, y]: &[f64; 2]| {
+        let lanes = evaluator.eval([x, y, 0.0]);
+        [lanes[0][0], lanes[1][0], lanes[1][1]]
+    };
+    points.iter().map(value).collect()
+}
+
+/// Points of a Halton sequence in a square around the origin.
+fn points(reach: f64) -> Vec<[f64; 2]> {
+    let radical_inverse = |mut i: usize, base: usize| {
+        let (mut value, mut digit) = (0.0, 1.0 / base as f64);
+        while i > 0 {
+            value += digit * (i % base) as f64;
+            digit /= base as f64;
+            i /= base;
+        }
+        value
+    };
+    let at = |i: usize| [2, 3].map(|base| reach * (2.0 * radical_inverse(i, base) - 1.0));
+    (1..=POINTS).map(at).collect()
+}
+
+#[test]
+fn both_formulas_have_the_same_distance_and_gradient() {
+    for source in SCENES {
+        let scene = compiled(source);
+        let program = scene.program();
+        assert!(has_alternative(program), "{source} has one formula");
+        let [short, bounded] = [FormulaChoice::Short, FormulaChoice::Bounded]
+            .map(|choice| program.by_formulas(choice));
+        for program in [&short, &bounded] {
+            assert!(!has_alternative(program), "{source}: a choice is left");
+        }
+        assert_ne!(short.distance, bounded.distance, "{source}");
+        for reach in REACHES {
+            let points = points(reach);
+            let both = values(&short, &points).into_iter().zip(values(&bounded, &points));
+            for (point, (short, bounded)) in points.iter().zip(both) {
+                let apart = short.iter().zip(bounded).map(|(a, b)| (a - b).abs());
+                let apart = apart.fold(0.0, f64::max);
+                assert!(
+                    apart <= PRECISION * reach.max(1.0),
+                    "{source} at {point:?}: {short:?} by cells, {bounded:?} by runs"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn evaluators_take_the_formula_with_bounds() {
+    for source in SCENES {
+        let scene = compiled(source);
+        let program = scene.program();
+        let bounded = program.by_formulas(FormulaChoice::Bounded);
+        let operations = |program: &Program| {
+            let distance = program.distance.expect("a distance");
+            Tape::new(&program.graph, &[distance]).expect("flat math").operations()
+        };
+        assert_eq!(operations(program), operations(&bounded), "{source}");
+    }
+}
+
+#[test]
+fn other_scenes_have_one_formula() {
+    let scene = compiled("sphere(1)\npolygon([[0, 0], [1, 0], [0, 1], [0.2, 0.2]]).extrude(1)");
+    assert!(!has_alternative(scene.program()));
+}
