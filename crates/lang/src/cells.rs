@@ -1,11 +1,11 @@
 //! Cells of the plane, each with the pieces of an outline that may be nearest to a point in it.
 //!
 //! A grid of square cells covers the box around the outline. Outside of the box, cells are
-//! [`COARSE`] columns or rows wide, and there are rings, each four times as wide as the one within:
+//! four columns or rows wide, and there are rings, each four times as wide as the one within:
 //! a point that is e sides of a cell outside of the box along an axis is in ring
 //! `ceil(log4(1 + 3 e))` of that axis. The last ring has no end. Outside of the box, the index of a
 //! column or row is that of the nearest coarse one of the box, plus the ring above or minus the
-//! ring below the box, plus [`RINGS`].
+//! ring below the box, plus 5, the number of rings.
 //!
 //! On its way to the nearest point of the outline, a point outside of the box enters it at a point
 //! of the border for which the same piece is nearest. So only those pieces matter in the rings.
