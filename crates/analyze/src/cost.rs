@@ -1,7 +1,7 @@
 //! The cost of one evaluation, counted on the graph.
 
 use sdfc_graph::{
-    Expander, FormulaChoice, Graph, LoopId, Node, NodeId, ShapeId, Stage, fold_transforms,
+    Expander, FormulaChoice, Graph, Loop, LoopId, Node, NodeId, ShapeId, Stage, fold_transforms,
     reachable_by,
 };
 
@@ -34,8 +34,17 @@ pub fn cost(graph: &Graph, roots: &[NodeId]) -> Cost {
         }
     }
     let outside = nodes.into_iter().filter(|&node| graph.loops_around(node) == 0);
-    cost.operations += in_loops(graph, outside);
+    cost.operations += in_loops(graph, outside, |_| true);
     cost
+}
+
+/// The operations that run at every point: those of [`cost`] without the loops that may end early.
+pub fn certain_operations(graph: &Graph, roots: &[NodeId]) -> usize {
+    let outside = reachable_by(graph, roots, FormulaChoice::Short)
+        .into_iter()
+        .filter(|&node| graph.loops_around(node) == 0);
+    let runs_to_its_end = |looped: &Loop| looped.condition.is_none();
+    operations_outside_loops(graph, roots) + in_loops(graph, outside, runs_to_its_end)
 }
 
 /// The operations at each point that are in no loop.
@@ -64,22 +73,27 @@ pub fn cost_of_shapes(graph: &Graph, shapes: &[ShapeId]) -> Option<Cost> {
     Some(cost(graph, &folded.roots))
 }
 
-/// The operations of the loops among some nodes.
-fn in_loops(graph: &Graph, nodes: impl Iterator<Item = NodeId>) -> usize {
+/// The operations of those of the loops among some nodes that count.
+fn in_loops(
+    graph: &Graph,
+    nodes: impl Iterator<Item = NodeId>,
+    counts: fn(&Loop) -> bool,
+) -> usize {
     let mut found: Vec<LoopId> = nodes
         .filter_map(|node| if let Node::Loop(id, ..) = graph.node(node) { Some(id) } else { None })
         .collect();
     found.sort_unstable();
     found.dedup();
-    found.into_iter().map(|id| in_loop(graph, id)).fold(0, usize::saturating_add)
+    let counted = found.into_iter().filter(|&id| counts(graph.loop_at(id)));
+    counted.map(|id| in_loop(graph, id, counts)).fold(0, usize::saturating_add)
 }
 
 /// The operations of all iterations of a loop.
-fn in_loop(graph: &Graph, id: LoopId) -> usize {
+fn in_loop(graph: &Graph, id: LoopId, counts: fn(&Loop) -> bool) -> usize {
     let body = graph.loop_body(id);
     let nodes: Vec<NodeId> = body.condition.into_iter().chain(body.step).collect();
     let own = nodes.iter().filter(|&&node| is_arithmetic(&graph.node(node))).count();
-    let rest = in_loops(graph, nodes.into_iter());
+    let rest = in_loops(graph, nodes.into_iter(), counts);
     own.saturating_add(rest).saturating_mul(graph.loop_at(id).max_iterations as usize)
 }
 

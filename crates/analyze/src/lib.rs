@@ -46,7 +46,7 @@ pub use certify::promise::{Promise, Sides};
 pub use certify::quality::{Qualities, Quality};
 pub use certify::reason::{Constant, Reason};
 pub use certify::suggest::{SampledSlope, SuggestedClauses, rounded_up, suggested_clauses};
-pub use cost::{Cost, cost, cost_of_shapes};
+pub use cost::{Cost, certain_operations, cost, cost_of_shapes};
 pub use prepare::{Prepared, prepare, prepare_with};
 pub use refute::claims::{LipschitzViolation, refute_lipschitz};
 pub use refute::clauses::{Clause, Violation, refute};

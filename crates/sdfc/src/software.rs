@@ -1,5 +1,6 @@
 //! Chooses the CPU back end for fields that a software GPU driver draws slowly.
 
+use sdfc_analyze::certain_operations;
 use sdfc_graph::eval::{Affine, FrameValues, Tape};
 use sdfc_march::Method;
 use sdfc_render::Gpu;
@@ -44,9 +45,11 @@ impl Scene {
         ))
     }
 
-    /// The number of operations that a ray's step takes, if few of them matter in each cell.
+    /// The number of operations that a ray's step takes, if few of them matter in each cell. Loops
+    /// that may end early do not count: those of outlines run few of their iterations.
     fn needless_operations(&self, method: Method) -> Option<usize> {
-        let operations = self.report.marched_cost.operations;
+        let field = self.program.marched_field()?;
+        let operations = certain_operations(&self.program.graph, &[field]);
         let is_large = operations >= LEAST_OPERATIONS && self.program.cullable_loops.is_empty();
         let is_simple = method == Method::Auto && self.is_certified();
         (is_large && is_simple && self.part_in_cells()? <= GREATEST_PART).then_some(operations)
