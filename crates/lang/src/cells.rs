@@ -1,11 +1,11 @@
 //! Cells of the plane, each with the pieces of an outline that may be nearest to a point in it.
 //!
-//! A grid of square cells covers the box around the outline. Outside of the box, cells are
-//! four columns or rows wide, and there are rings, each four times as wide as the one within:
-//! a point that is e sides of a cell outside of the box along an axis is in ring
-//! `ceil(log4(1 + 3 e))` of that axis. The last ring has no end. Outside of the box, the index of a
-//! column or row is that of the nearest coarse one of the box, plus the ring above or minus the
-//! ring below the box, plus 5, the number of rings.
+//! A grid of square cells covers the box around the outline. Five rings of cells surround the box,
+//! each four times as wide as the one within: a point that is e sides of a cell outside of the box
+//! along an axis is in ring `ceil(log4(1 + 3 e))` of that axis. The last ring has no end. Along the
+//! box, four columns or rows of the grid are one of the rings. The index of a column or row of the
+//! rings is that of the nearest one along the box, plus the ring above or minus the ring below the
+//! box, plus 5.
 //!
 //! On its way to the nearest point of the outline, a point outside of the box enters it at a point
 //! of the border for which the same piece is nearest. So only those pieces matter in the rings.
@@ -65,11 +65,11 @@ pub fn cells(arcs: &[Curve], layout: Layout) -> Cells {
     let all: Vec<usize> = (0..arcs.len()).collect();
     let mut search = Search { found: vec![false; arcs.len()], arcs, counts, distances: 0 };
     let fine = counts.map(|count| (0..=count).map(|line| line as f64).collect::<Vec<_>>());
-    let mut inner = Grid::new(fine);
+    let mut inner = Grid::new(fine, CUTS_OF_CELL);
     let whole = counts.map(|count| [0, count]);
     search.fill(&mut inner, whole, &all);
     let outer = search.of_border(&all);
-    let mut rings = Grid::new(counts.map(ring_lines));
+    let mut rings = Grid::new(counts.map(ring_lines), CUTS_OF_RING);
     let [columns, rows] = counts.map(|count| {
         let (below, inside) = (RINGS as usize, count.div_ceil(COARSE));
         [0, below, below + inside, 2 * below + inside]
@@ -149,12 +149,14 @@ type Ranges<T> = [[T; 2]; 2];
 struct Grid {
     lines: [Vec<f64>; 2],
     lists: Vec<Vec<usize>>,
+    /// Each cell is cut in halves up to this many times.
+    cuts: u32,
 }
 
 impl Grid {
-    fn new(lines: [Vec<f64>; 2]) -> Self {
+    fn new(lines: [Vec<f64>; 2], cuts: u32) -> Self {
         let cells = lines.iter().map(|lines| lines.len() - 1).product();
-        Self { lines, lists: vec![Vec::new(); cells] }
+        Self { lines, lists: vec![Vec::new(); cells], cuts }
     }
 
     fn region(&self, block: Ranges<usize>) -> Ranges<f64> {
@@ -192,9 +194,7 @@ impl Search {
         let region = grid.region(block);
         let [columns, rows] = block.map(|[first, last]| last - first);
         if columns * rows == 1 {
-            let is_small = length(region[0]).max(length(region[1])) <= 1.0;
-            let cuts = if is_small { CUTS_OF_CELL } else { CUTS_OF_RING };
-            *grid.list(block[0][0], block[1][0]) = self.of_region(region, among, cuts);
+            *grid.list(block[0][0], block[1][0]) = self.of_regions(&[region], among, grid.cuts);
             return;
         }
         let near = self.nearest(region, among);
@@ -212,17 +212,16 @@ impl Search {
     fn of_border(&mut self, among: &[usize]) -> Vec<usize> {
         let [columns, rows] = self.counts.map(|count| count as f64);
         let (across, up) = ([0.0, columns], [0.0, rows]);
-        self.found.fill(false);
-        for side in [[across, [0.0; 2]], [across, [rows; 2]], [[0.0; 2], up], [[columns; 2], up]] {
-            self.find(side, among, CUTS_OF_BORDER);
-        }
-        among.iter().copied().filter(|&piece| self.found[piece]).collect()
+        let sides = [[across, [0.0; 2]], [across, [rows; 2]], [[0.0; 2], up], [[columns; 2], up]];
+        self.of_regions(&sides, among, CUTS_OF_BORDER)
     }
 
-    /// The pieces that may be nearest in a region, which is cut in parts.
-    fn of_region(&mut self, region: Ranges<f64>, among: &[usize], cuts: u32) -> Vec<usize> {
+    /// The pieces that may be nearest in some regions, each of which is cut in parts.
+    fn of_regions(&mut self, regions: &[Ranges<f64>], among: &[usize], cuts: u32) -> Vec<usize> {
         self.found.fill(false);
-        self.find(region, among, cuts);
+        for &region in regions {
+            self.find(region, among, cuts);
+        }
         among.iter().copied().filter(|&piece| self.found[piece]).collect()
     }
 
@@ -246,9 +245,9 @@ impl Search {
         }
     }
 
-    /// Those of the pieces that may be nearest to a point in a region. Another piece than the one
-    /// nearest to the middle is farther away everywhere within r of the middle if it is at the
-    /// middle, by more than r times [`Self::slope`].
+    /// Those of the pieces that may be nearest to a point in a region, all of which is within r of
+    /// its middle. One piece is nearest to the middle. Another one is farther than it everywhere in
+    /// the region if, at the middle, it is farther by more than r times [`Self::slope`].
     fn nearest(&mut self, region: Ranges<f64>, among: &[usize]) -> Vec<usize> {
         let middle = region.map(|[lo, hi]| f64::midpoint(lo, hi));
         let far = region.iter().flatten().fold(0.0_f64, |far, x| far.max(x.abs()));
@@ -298,11 +297,6 @@ mod tests {
     use crate::arcs::arcs;
     use crate::outline::boundary;
 
-    fn random(state: &mut u64) -> f64 {
-        *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-        (*state >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
     /// An oval with a notch in one half.
     fn outline() -> Vec<Curve> {
         let at = |i: f64, r: f64| {
@@ -342,10 +336,11 @@ mod tests {
         let layout = Layout { corner: [-1.1, -0.7], side, counts };
         let cells = cells(&curves, layout);
         let all: Vec<Arc> = curves.iter().map(|&curve| Arc::new(curve)).collect();
-        let mut state = 7;
         for reach in [1.5, 1.5, 4.0, 30.0, 1e3, 1e5] {
-            for _ in 0..20_000 {
-                let p = [0, 1].map(|_| reach * (2.0 * random(&mut state) - 1.0));
+            for i in 0..20_000 {
+                // A lattice whose points are spread evenly.
+                let steps = [0.754_877_666_246_693, 0.569_840_290_998_053];
+                let p = steps.map(|step| reach * (2.0 * (step * f64::from(i)).fract() - 1.0));
                 let t = [0, 1].map(|axis| (p[axis] - layout.corner[axis]) / side);
                 let cell = cell(t, counts);
                 let items = &cells.items[cells.starts[cell]..cells.starts[cell + 1]];

@@ -4,11 +4,12 @@
 #![allow(clippy::expect_used, reason = "a test stops where it fails")]
 
 use sdfc::{Compiler, FrameValues, Scene};
+use sdfc_analyze::certain_operations;
 use sdfc_graph::eval::Tape;
 use sdfc_graph::{Binary, FormulaChoice, Node, Program, reachable};
 
 /// Points for each scene and reach.
-const POINTS: usize = 400;
+const POINTS: u32 = 400;
 /// Half the sides of squares of points, in scene units. Outlines are about one unit large.
 const REACHES: [f64; 5] = [0.6, 1.5, 8.0, 300.0, 1e5];
 /// Error of a distance and of a slope, as a fraction of the reach.
@@ -44,19 +45,11 @@ fn values(program: &Program, points: &[[f64; 2]]) -> Vec<[f64; 3]> {
     points.iter().map(value).collect()
 }
 
-/// Points of a Halton sequence in a square around the origin.
+/// Points that are spread evenly in a square around the origin.
 fn points(reach: f64) -> Vec<[f64; 2]> {
-    let radical_inverse = |mut i: usize, base: usize| {
-        let (mut value, mut digit) = (0.0, 1.0 / base as f64);
-        while i > 0 {
-            value += digit * (i % base) as f64;
-            digit /= base as f64;
-            i /= base;
-        }
-        value
-    };
-    let at = |i: usize| [2, 3].map(|base| reach * (2.0 * radical_inverse(i, base) - 1.0));
-    (1..=POINTS).map(at).collect()
+    let steps = [0.754_877_666_246_693, 0.569_840_290_998_053];
+    let at = |i: u32| steps.map(|step| reach * (2.0 * (step * f64::from(i)).fract() - 1.0));
+    (0..POINTS).map(at).collect()
 }
 
 #[test]
@@ -104,4 +97,20 @@ fn evaluators_take_the_formula_with_bounds() {
 fn other_scenes_have_one_formula() {
     let scene = compiled("sphere(1)\npolygon([[0, 0], [1, 0], [0, 1], [0.2, 0.2]]).extrude(1)");
     assert!(!has_alternative(scene.program()));
+}
+
+/// `--backend auto` takes the CPU for formulas of many operations that run at every point.
+#[test]
+fn loops_that_end_early_are_not_certain_to_run() {
+    let operations = |source: &str| {
+        let scene = compiled(source);
+        let field = scene.program().marched_field().expect("a field");
+        let certain = certain_operations(&scene.program().graph, &[field]);
+        (certain, scene.report().marched_cost.operations)
+    };
+    let (certain, all) = operations("text(\"8\").extrude(0.2)");
+    assert!(certain > 0 && 10 * certain < all, "{certain} of {all}");
+    // The loop over the corners of this polygon has no condition.
+    let (certain, all) = operations("polygon([[0, 0], [2, 0], [1, 0.5], [1, 2]]).extrude(0.2)");
+    assert_eq!(certain, all);
 }
