@@ -110,7 +110,8 @@ fn loops_that_end_early_are_not_certain_to_run() {
     };
     let (certain, all) = operations("text(\"8\").extrude(0.2)");
     assert!(certain > 0 && 10 * certain < all, "{certain} of {all}");
-    // The loop over the corners of this polygon has no condition.
-    let (certain, all) = operations("polygon([[0, 0], [2, 0], [1, 0.5], [1, 2]]).extrude(0.2)");
+    // The loop over the corners of this star has no condition.
+    let star = "polygon([for i in 0..24: (1 + i % 2) * [cos(i * 15deg), sin(i * 15deg)]])";
+    let (certain, all) = operations(&format!("{star}.extrude(0.2)"));
     assert_eq!(certain, all);
 }
