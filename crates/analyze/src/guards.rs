@@ -4,7 +4,7 @@
 //! distance outside is at least the signed distance to the box. Within the solid it is, too: no
 //! point of the solid is deeper in it than in the box, and the field never exceeds the depth.
 
-use sdfc_graph::{Bounds, Dim, ExpandError, Expander, Graph, Guard, NodeId, ShapeId, reachable};
+use sdfc_graph::{Bounds, Dim, ExpandError, FAR, Expander, Graph, Guard, Node, NodeId, ShapeId, reachable};
 
 use crate::analytic::boxes::MARGIN;
 use crate::analytic::operands::{MarchedOperand, whole_shape};
@@ -48,6 +48,38 @@ pub(crate) fn limit_operands(
         }
     }
     Ok(replaced)
+}
+
+/// A lower and an upper bound of operands whose formula has loops: the distance to a box around the
+/// solid, or the limit, and the greatest distance to a point of the box.
+pub(crate) fn bounds_of_loops(
+    graph: &mut Graph,
+    expander: &mut Expander,
+    (bounds, qualities): (&mut Bounds, &Qualities),
+    operands: &[MarchedOperand],
+) -> Result<Vec<(NodeId, [NodeId; 2])>, ExpandError> {
+    let mut found = Vec::new();
+    for operand in operands {
+        if !has_loop(graph, operand.value) {
+            continue;
+        }
+        if let Some(limit) = operand.limit {
+            found.push((operand.value, [limit, graph.number(FAR)]));
+        } else if is_above_box(qualities, operand.shape)
+            && let Some(corners) = box_around(graph, expander, bounds, operand)?
+        {
+            let point = graph.point(0, Dim::Three);
+            let lower = signed_distance_to_box(graph, point, corners, MARGIN);
+            let upper = greatest_distance(graph, point, corners);
+            found.push((operand.value, [lower, upper]));
+        }
+    }
+    Ok(found)
+}
+
+/// True if the value of a node is computed by a loop.
+pub(crate) fn has_loop(graph: &Graph, node: NodeId) -> bool {
+    reachable(graph, &[node]).into_iter().any(|id| matches!(graph.node(id), Node::Loop(..)))
 }
 
 /// The guards of the operands that are limited, or exact outside and bounded, with their shapes.
@@ -116,14 +148,34 @@ fn distance_to_box(
     operand: &MarchedOperand,
     margin: f64,
 ) -> Result<Option<NodeId>, ExpandError> {
+    let corners = box_around(graph, expander, bounds, operand)?;
+    let point = graph.point(0, Dim::Three);
+    Ok(corners.map(|corners| signed_distance_to_box(graph, point, corners, margin)))
+}
+
+/// The corners of a box around an operand; `None` if the box has no end.
+fn box_around(
+    graph: &mut Graph,
+    expander: &mut Expander,
+    bounds: &mut Bounds,
+    operand: &MarchedOperand,
+) -> Result<Option<[NodeId; 2]>, ExpandError> {
     let shape = whole_shape(graph, operand);
     let point = graph.point(0, Dim::Three);
     let [lo, hi] = bounds.of(graph, shape);
-    let [lo, hi] = [expander.node(graph, lo, &[point])?, expander.node(graph, hi, &[point])?];
-    if ![lo, hi].into_iter().all(|corner| graph.is_finite(corner)) {
-        return Ok(None);
-    }
-    Ok(Some(signed_distance_to_box(graph, point, [lo, hi], margin)))
+    let corners = [expander.node(graph, lo, &[point])?, expander.node(graph, hi, &[point])?];
+    Ok(corners.iter().all(|&corner| graph.is_finite(corner)).then_some(corners))
+}
+
+/// An upper bound of the distance from a point to those of a box: that to its middle plus half of
+/// its diagonal. A solid in the box is no farther away.
+fn greatest_distance(graph: &mut Graph, point: NodeId, [lo, hi]: [NodeId; 2]) -> NodeId {
+    let half = graph.number(0.5);
+    let [sum, size] = [graph.add(hi, lo), graph.sub(hi, lo)];
+    let [center, half] = [graph.mul(sum, half), graph.mul(size, half)];
+    let from_center = graph.sub(point, center);
+    let [away, radius] = [graph.length(from_center), graph.length(half)];
+    graph.add(away, radius)
 }
 
 /// The signed distance from a point to a box or a rectangle that is larger than one with these

@@ -22,6 +22,7 @@ use crate::cost::cost;
 use crate::guards::guard_of_region;
 use crate::leaves::count_leaves;
 use crate::report::{Report, shape_reports};
+use crate::reroll::kinds::OperandBounds;
 use crate::reroll::materials::{fold_with_chains, reroll_materials};
 use crate::reroll::rewrite::{RerolledLoop, reroll};
 use crate::reroll::strategy::LoopStrategy;
@@ -170,8 +171,9 @@ fn formulas(
     let (fields, materials) = folded.roots.split_at(1 + shapes.len());
     let (mut fields, mut materials, mut loops) = (fields.to_vec(), materials.to_vec(), Vec::new());
     if uses_loops {
-        let rerolled = reroll(graph, &fields);
-        materials = reroll_materials(graph, &materials, &rerolled.replaced, &chains);
+        let bounds = OperandBounds::default();
+        let rerolled = reroll(graph, &fields, &bounds);
+        materials = reroll_materials(graph, &materials, (&rerolled.replaced, &bounds), &chains);
         (fields, loops) = (rerolled.roots, rerolled.loops);
     }
     let (conservative, distances) = (fields[0], fields[1..].to_vec());

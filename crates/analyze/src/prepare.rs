@@ -12,11 +12,12 @@ use crate::certify::conservative::conservative_field;
 use crate::certify::inexact::inexact_operators;
 use crate::certify::quality::Qualities;
 use crate::cost::{Cost, cost};
-use crate::guards::{guards, limit_operands};
+use crate::guards::{bounds_of_loops, guards, limit_operands};
 use crate::leaves::count_leaves;
 use crate::planar::planar_picture;
 use crate::report::{Report, shape_reports};
 use crate::reroll::cullable::cullable_loops;
+use crate::reroll::kinds::OperandBounds;
 use crate::reroll::marched_bounds::looped_bounds;
 use crate::reroll::materials::{fold_with_chains, reroll_materials};
 use crate::reroll::rewrite::{reroll, similar_groups};
@@ -121,16 +122,27 @@ fn flatten(
     for operand in &operands.marched {
         flat.extend([operand.value, operand.limit.unwrap_or(operand.value)]);
     }
+    let with_operands = flat.len();
+    if uses_loops {
+        let known = (&mut bounds, &qualities);
+        let bounds = bounds_of_loops(graph, &mut expander, known, &operands.marched)?;
+        flat.extend(bounds.into_iter().flat_map(|(value, [lower, upper])| [value, lower, upper]));
+    }
     let chains = if uses_loops { expander.material_chains(graph)? } else { Vec::new() };
     let (folded, chains) = fold_with_chains(graph, &flat, chains);
     program.names = folded.names(graph, &expander.names());
-    let (flat, marched) = folded.roots.split_at(with_material);
+    let (flat, operand_bounds) = folded.roots.split_at(with_operands);
+    let (operand_bounds, _) = operand_bounds.as_chunks();
+    let operand_bounds: OperandBounds =
+        operand_bounds.iter().map(|&[value, lower, upper]| (value, [lower, upper])).collect();
+    let (flat, marched) = flat.split_at(with_material);
     let (marched, _) = marched.as_chunks();
     let (fields, material) = flat.split_at(count);
     let (mut fields, mut material, mut loops) = (fields.to_vec(), material.to_vec(), Vec::new());
     if uses_loops {
-        let rerolled = reroll(graph, &fields);
-        material = reroll_materials(graph, &material, &rerolled.replaced, &chains);
+        let rerolled = reroll(graph, &fields, &operand_bounds);
+        let known = (&rerolled.replaced, &operand_bounds);
+        material = reroll_materials(graph, &material, known, &chains);
         (fields, loops) = (rerolled.roots, rerolled.loops);
     }
     let Some(&distance) = fields.first() else { return Ok(Report::default()) };

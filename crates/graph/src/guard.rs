@@ -1,6 +1,7 @@
 //! Distances that are evaluated only where they matter: operands of a union, layers of a picture.
 
 use crate::graph::Graph;
+use crate::loops::Loop;
 use crate::node::{Binary, Node, NodeId, Ternary};
 use crate::walk::operands;
 
@@ -30,35 +31,59 @@ pub struct GuardedValue {
 const MAX_OPERANDS: usize = 4096;
 
 /// A field with the same values that evaluates a guarded operand only where its bound is less than
-/// all operands before it.
+/// all operands before it. The same holds for the operands of loops whose skip condition has a
+/// lower bound that costs less.
 pub(crate) fn guarded_field(graph: &mut Graph, field: NodeId, guards: &[Guard]) -> NodeId {
-    if guards.is_empty() {
-        return field;
-    }
     let is_minimum = |op: Binary, _| op == Binary::Min;
     let Some(mut parts) = operands(graph, field, MAX_OPERANDS, is_minimum) else { return field };
     parts.sort_unstable();
     parts.dedup();
-    let (mut plain, mut guarded) = (Vec::new(), Vec::new());
+    let (mut plain, mut loops, mut guarded) = (Vec::new(), Vec::new(), Vec::new());
     for part in parts {
         match guards.iter().find(|guard| guard.operand == part) {
             Some(guard) => guarded.push(*guard),
-            None => plain.push(part),
+            None => match guarded_loop(graph, part) {
+                Some(looped) => loops.push(looped),
+                None => plain.push(part),
+            },
         }
     }
-    if guarded.is_empty() || plain.len() + guarded.len() == 1 {
+    if guarded.is_empty() && loops.is_empty() {
         return field;
     }
-    let mut guarded = guarded.into_iter();
-    let first = plain.into_iter().reduce(|a, b| graph.min(a, b));
-    let Some(first) = first.or_else(|| guarded.next().map(|guard| guard.operand)) else {
-        return field;
-    };
-    guarded.fold(first, |least, Guard { operand, bound }| {
-        let matters = graph.binary(Binary::Lt, bound, least);
-        let with_operand = graph.min(least, operand);
-        graph.select(matters, with_operand, least)
-    })
+    let mut least = plain.into_iter().reduce(|a, b| graph.min(a, b));
+    for mut looped in loops {
+        if let Some(least) = least {
+            looped.init = vec![graph.min(least, looped.init[0])];
+        }
+        least = graph.add_loop(looped).pop();
+    }
+    for Guard { operand, bound } in guarded {
+        least = Some(match least {
+            None => operand,
+            Some(least) => {
+                let matters = graph.binary(Binary::Lt, bound, least);
+                let with_operand = graph.min(least, operand);
+                graph.select(matters, with_operand, least)
+            }
+        });
+    }
+    least.unwrap_or(field)
+}
+
+/// The loop that is a node, with its operand in a branch. `None` if the node is another one, or if
+/// the skip condition has no bound that costs less than the operand.
+fn guarded_loop(graph: &mut Graph, node: NodeId) -> Option<Loop> {
+    let Node::Loop(id, ..) = graph.node(node) else { return None };
+    let looped = graph.loop_at(id).clone();
+    let (skip, &[step]) = (looped.skip?, looped.step.as_slice()) else { return None };
+    let Node::Binary(Binary::Min, least, operand) = graph.node(step) else { return None };
+    if skip.lower == operand {
+        return None;
+    }
+    let matters = graph.binary(Binary::Lt, skip.lower, least);
+    let step = graph.select(matters, step, least);
+    Some(Loop { step: vec![step], ..looped })
 }
 
 /// The distance where its bound is less than `near`, and the bound elsewhere.

@@ -33,15 +33,32 @@ pub struct Loop {
 
 /// A condition under which an iteration is a no-op.
 ///
-/// An iteration does not change the state wherever `operand >= state[0] + margin`, with the state
-/// before the iteration. Where that can be proven for a region, the iteration may be skipped there.
+/// An iteration combines the state with an operand. It does not change the state wherever
+/// `operand >= state[0] + margin`, with the state before the iteration. Where that can be proven
+/// for a region, the iteration may be skipped there. Both bounds are the operand itself, unless
+/// that costs much.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct SkipCondition {
-    /// A scalar over the iteration index and over nodes outside the loop. It does not depend on
-    /// the state.
-    pub operand: NodeId,
+    /// A lower bound of the operand: a scalar over the iteration index and over nodes outside the
+    /// loop. It does not depend on the state.
+    pub lower: NodeId,
+    /// An upper bound of the operand, over the same; [`crate::FAR`] if none is known.
+    pub upper: NodeId,
     /// A scalar of at least 0, known per frame.
     pub margin: NodeId,
+}
+
+impl SkipCondition {
+    /// The nodes of the condition.
+    pub fn nodes(self) -> [NodeId; 3] {
+        [self.lower, self.upper, self.margin]
+    }
+
+    /// The same condition over other nodes.
+    pub fn map(self, map: impl FnMut(NodeId) -> NodeId) -> Self {
+        let [lower, upper, margin] = self.nodes().map(map);
+        Self { lower, upper, margin }
+    }
 }
 
 impl Loop {
@@ -57,7 +74,7 @@ impl Loop {
             return if position == 0 { self.count.or(self.condition) } else { self.condition };
         }
         let rest = self.init.iter().chain(&self.step).copied();
-        let skip = self.skip.into_iter().flat_map(|skip| [skip.operand, skip.margin]);
+        let skip = self.skip.into_iter().flat_map(SkipCondition::nodes);
         rest.chain(skip).nth(position - head)
     }
 
@@ -70,10 +87,7 @@ impl Loop {
             condition: self.condition.map(&mut map),
             init: self.init.iter().copied().map(&mut map).collect(),
             step: self.step.iter().copied().map(&mut map).collect(),
-            skip: self.skip.map(|SkipCondition { operand, margin }| SkipCondition {
-                operand: map(operand),
-                margin: map(margin),
-            }),
+            skip: self.skip.map(|skip| skip.map(map)),
         }
     }
 

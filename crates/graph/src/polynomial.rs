@@ -82,7 +82,8 @@ impl Polynomial {
         Self::default()
     }
 
-    fn number(value: f64) -> Self {
+    /// The polynomial that is a number.
+    pub fn number(value: f64) -> Self {
         Self { terms: BTreeMap::from([(Monomial::new(), Coefficient::new(value))]) }
     }
 

@@ -46,7 +46,8 @@ pub struct CullableLoop {
     /// `x`: a lower bound on the distance to where the iteration can affect a ray; if it is
     /// positive all along a ray, the ray hits the same without this iteration. `y`: the operand
     /// minus the blend radius; where it exceeds another iteration's `z`, the loop's result is the
-    /// same without this iteration. `z`: the operand.
+    /// same without this iteration. `z`: the operand. Bounds may take the place of the operand: a
+    /// lower one in `x` and `y`, an upper one in `z`.
     pub culling_bounds: NodeId,
     /// Number of iterations.
     pub iterations: u32,
@@ -183,8 +184,8 @@ impl Program {
             [&mut guard.operand, &mut guard.bound].into_iter().for_each(map);
         }
         for looped in &mut self.cullable_loops {
-            let SkipCondition { operand, margin } = &mut looped.skip;
-            [operand, margin, &mut looped.culling_bounds].into_iter().for_each(map);
+            looped.skip = looped.skip.map(&new);
+            map(&mut looped.culling_bounds);
         }
         let names = std::mem::take(&mut self.names);
         self.names = names.into_iter().map(|(node, name)| (new(node), name)).collect();

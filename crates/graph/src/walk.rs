@@ -106,7 +106,7 @@ impl Graph {
             Node::Loop(loop_, position, _) => self.rebuild_loop(loop_, position, map),
             Node::Element(table, at, _) => {
                 let at = map(at);
-                self.element(self.table(table).clone(), at)
+                self.element_of(table, at)
             }
             Node::Unary(op, a) => self.unary(op, map(a)),
             Node::Binary(op, a, b) => {

@@ -5,11 +5,15 @@
 //! the map is followed back through its operations as a set of matrices, one for each choice of
 //! sides of the creases. Its constant is the largest operator norm of a matrix, times the constant
 //! of the values at which it ends: the lanes of the point, or of any vector with a known constant.
+//!
+//! A rotation by a param has no matrix of numbers. It changes no norm, so the map goes on before it
+//! with the norm of the matrices so far (see `per_frame`).
 
 use sdfc_graph::{Graph, Node, NodeId};
 
 use crate::certify::affine::{is_fixed, largest_singular_value};
 use crate::certify::branches::{Lane, branches, counterpart};
+use crate::certify::per_frame::similarity;
 
 /// Largest number of operations that are followed.
 const MAX_STEPS: usize = 512;
@@ -33,6 +37,7 @@ pub(crate) fn constant(
     let mut map = Map::identity((0..width).map(|lane| (node, lane)).collect());
     let mut factor = 1.0;
     let mut few: Option<Map> = None;
+    let mut narrow = map.clone();
     for step in 0..MAX_STEPS {
         map.drop_columns(graph, level);
         let end = map.end(graph);
@@ -47,10 +52,16 @@ pub(crate) fn constant(
         if map.columns.len() > MAX_COLUMNS {
             return None;
         }
-        if step > 0 && map.columns.len() <= 3 {
-            few = Some(map.clone());
+        if map.columns.len() <= 3 {
+            narrow = map.clone();
+            few = Some(map.clone()).filter(|_| step > 0);
         }
         if !map.expand(graph, level) {
+            if let Some((scale, columns)) = similarity(graph, &narrow.columns, level) {
+                factor *= narrow.norm() * scale;
+                map = Map::identity(columns);
+                continue;
+            }
             // The map ends at a vector that is not piecewise linear itself.
             let constant = known(end.filter(|&end| end != node)?)?;
             let factor = graph.number(factor * map.norm());

@@ -9,7 +9,8 @@ use sdfc_graph::{
 use crate::reroll::chain::Step;
 use crate::reroll::kinds::formulas_by_kind;
 use crate::reroll::loops::{MIN_OPERANDS, loop_over};
-use crate::reroll::template::{ShapeKeys, template};
+use crate::reroll::shape_keys::ShapeKeys;
+use crate::reroll::template::template;
 
 /// Largest number of kinds of operand in one loop. All of them are evaluated in each iteration.
 pub(super) const MAX_KINDS: usize = 8;
@@ -46,7 +47,7 @@ pub(super) fn blended_step(
     let given: [(&[NodeId], NodeId); 2] = [(&before, state), (&operands, operand)];
     let next = *template(graph, keys, &[&values], &given, index)?.first()?;
     let margin = widest(graph, steps.iter().map(|step| step.width));
-    let skip = margin.map(|margin| SkipCondition { operand, margin });
+    let skip = margin.map(|margin| SkipCondition { lower: operand, upper: operand, margin });
     Some(BlendedStep { next, operand, skip })
 }
 

@@ -14,6 +14,7 @@
 
 use sdfc_graph::{CullableLoop, Graph, Node, NodeId, SkipCondition, reachable};
 
+use crate::guards::has_loop;
 use crate::reroll::active_range::{ActiveRange, BlendContext, active_ranges};
 
 /// Largest number of cullable loops; others run all of their iterations.
@@ -44,7 +45,7 @@ pub(crate) fn cullable_loops(
             Some((_, known, _)) => {
                 *known = range.zip(*known).and_then(|(a, b)| a.union(graph, b));
             }
-            None if has_no_loop(graph, skip.operand) => found.push((skip, range, iterations)),
+            None if !has_loop(graph, skip.lower) => found.push((skip, range, iterations)),
             None => {}
         }
     }
@@ -58,9 +59,9 @@ pub(crate) fn cullable_loops(
         let all = range.of_chain(graph, skip.margin);
         let blended = graph.sub(all.hi, range.hi);
         let scale = graph.number(range.scale);
-        let operand = graph.mul(skip.operand, scale);
-        let (distance, lowest) = (graph.sub(operand, all.hi), graph.sub(operand, blended));
-        let culling_bounds = graph.compose(&[distance, lowest, operand]);
+        let [lower, upper] = [skip.lower, skip.upper].map(|bound| graph.mul(bound, scale));
+        let (distance, lowest) = (graph.sub(lower, all.hi), graph.sub(lower, blended));
+        let culling_bounds = graph.compose(&[distance, lowest, upper]);
         CullableLoop {
             skip,
             culling_bounds,
@@ -69,9 +70,4 @@ pub(crate) fn cullable_loops(
         }
     };
     found.into_iter().map(cullable).collect()
-}
-
-/// True if an operand contains no loop.
-fn has_no_loop(graph: &Graph, operand: NodeId) -> bool {
-    reachable(graph, &[operand]).into_iter().all(|id| !matches!(graph.node(id), Node::Loop(..)))
 }

@@ -3,10 +3,11 @@
 use std::hash::Hash;
 
 use rustc_hash::FxHashMap;
-use sdfc_graph::{Binary, Const, Graph, LoopVar, NodeId, Table, Type};
+use sdfc_graph::{Binary, Const, Graph, IdMap, LoopVar, NodeId, Table, Type};
 
 use crate::reroll::loops::is_worth_a_loop;
-use crate::reroll::template::{ShapeKeys, template};
+use crate::reroll::shape_keys::ShapeKeys;
+use crate::reroll::template::template;
 
 /// Groups of positions of values that are equal up to constants.
 pub(super) fn grouped(
@@ -37,21 +38,37 @@ pub(super) fn positions_by_key<K: Eq + Hash>(keys: impl Iterator<Item = K>) -> V
 pub(super) struct Kind {
     /// Their positions.
     pub(super) members: Vec<usize>,
-    /// Their formula, by the index of a loop; `None` if no loop is worth it.
-    pub(super) operand: Option<NodeId>,
+    /// Their formula; `None` if no loop is worth it.
+    pub(super) operand: Option<Operand>,
 }
+
+/// The formula of similar operands and its bounds, by the index of a loop at depth 0.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Operand {
+    pub(super) value: NodeId,
+    /// A lower and an upper bound: the value itself, or what [`OperandBounds`] has.
+    pub(super) bounds: [NodeId; 2],
+}
+
+/// A lower and an upper bound of operands that cost much.
+pub(crate) type OperandBounds = IdMap<[NodeId; 2]>;
 
 /// The kinds of the operands of a minimum. Operands without a common formula, because their
 /// per-frame values differ too much, are divided into kinds in which these differ less.
-pub(super) fn kinds(graph: &mut Graph, keys: &mut ShapeKeys, operands: &[NodeId]) -> Vec<Kind> {
+pub(super) fn kinds(
+    graph: &mut Graph,
+    keys: &mut ShapeKeys,
+    operands: &[NodeId],
+    bounds: &OperandBounds,
+) -> Vec<Kind> {
     let mut found = Vec::new();
     for members in grouped(graph, keys, operands) {
         let values: Vec<NodeId> = members.iter().map(|&at| operands[at]).collect();
-        let operand = common_operand(graph, keys, &values);
+        let operand = common_operand(graph, keys, &values, bounds);
         let is_divided = operand.is_none() && is_worth_a_loop(graph, &values);
         match keys.stricter().filter(|_| is_divided) {
             Some(mut stricter) => {
-                let inner = kinds(graph, &mut stricter, &values).into_iter();
+                let inner = kinds(graph, &mut stricter, &values, bounds).into_iter();
                 found.extend(inner.map(|kind| Kind {
                     members: kind.members.into_iter().map(|at| members[at]).collect(),
                     ..kind
@@ -65,12 +82,25 @@ pub(super) fn kinds(graph: &mut Graph, keys: &mut ShapeKeys, operands: &[NodeId]
 
 /// The formula of similar operands of a minimum, by the index of a loop; `None` if they are too few
 /// or differ in more than constants.
-fn common_operand(graph: &mut Graph, keys: &mut ShapeKeys, operands: &[NodeId]) -> Option<NodeId> {
+fn common_operand(
+    graph: &mut Graph,
+    keys: &mut ShapeKeys,
+    operands: &[NodeId],
+    bounds: &OperandBounds,
+) -> Option<Operand> {
     if !is_worth_a_loop(graph, operands) {
         return None;
     }
     let index = graph.variable(0, LoopVar::Index, Type::Scalar);
-    template(graph, keys, &[operands], &[], index)?.first().copied()
+    let ends: Option<Vec<[NodeId; 2]>> = operands.iter().map(|&it| bounds.get(it)).collect();
+    let Some(ends) = ends else {
+        let value = *template(graph, keys, &[operands], &[], index)?.first()?;
+        return Some(Operand { value, bounds: [value; 2] });
+    };
+    let [lower, upper] = [0, 1].map(|end| ends.iter().map(|ends| ends[end]).collect::<Vec<_>>());
+    let both = template(graph, keys, &[operands, &lower, &upper], &[], index)?;
+    let &[value, lower, upper] = both.as_slice() else { return None };
+    Some(Operand { value, bounds: [lower, upper] })
 }
 
 /// One formula for each list of nodes, whose value is the list's node i where `number` is i.

@@ -17,11 +17,11 @@ use sdfc_graph::{
 };
 
 use crate::reroll::blended::{MaterialLoop, joined};
-use crate::reroll::kinds::{Kind, formulas_by_kind, kinds};
+use crate::reroll::kinds::{Kind, Operand, OperandBounds, formulas_by_kind, kinds};
 use crate::reroll::loops::loop_over;
 use crate::reroll::rewrite::rebuilt;
 use crate::reroll::selection::{Selection, minimum, selections};
-use crate::reroll::template::ShapeKeys;
+use crate::reroll::shape_keys::ShapeKeys;
 
 /// Largest number of different formulas of materials in one union. All of them are evaluated, so
 /// with more of them the selections stay as they are.
@@ -53,7 +53,7 @@ pub(crate) fn fold_with_chains(
 pub(crate) fn reroll_materials(
     graph: &mut Graph,
     fields: &[NodeId],
-    replaced: &IdMap<NodeId>,
+    (replaced, bounds): (&IdMap<NodeId>, &OperandBounds),
     chains: &[MaterialChain],
 ) -> Vec<NodeId> {
     let mut lookups = Lookups::default();
@@ -69,7 +69,7 @@ pub(crate) fn reroll_materials(
         })
         .collect();
     for selection in selections(graph, &reachable(graph, fields)) {
-        if let Some((nearest, values)) = lookup(graph, &mut keys, &selection, replaced) {
+        if let Some((nearest, values)) = lookup(graph, &mut keys, &selection, (replaced, bounds)) {
             lookups.values.extend(selection.heads.iter().copied().zip(values));
             lookups.minima.insert(selection.distances, nearest.distance);
         }
@@ -110,10 +110,10 @@ fn lookup(
     graph: &mut Graph,
     keys: &mut ShapeKeys,
     selection: &Selection,
-    replaced: &IdMap<NodeId>,
+    known: (&IdMap<NodeId>, &OperandBounds),
 ) -> Option<(Numbered, Vec<NodeId>)> {
     let lists: Vec<&[NodeId]> = selection.values.iter().map(Vec::as_slice).collect();
-    let nearest = nearest(graph, keys, &selection.operands, replaced)?;
+    let nearest = nearest(graph, keys, &selection.operands, known)?;
     let values = formulas_by_kind(graph, keys, &lists, nearest.number, MAX_KINDS)?;
     Some((nearest, values))
 }
@@ -130,11 +130,11 @@ fn nearest(
     graph: &mut Graph,
     keys: &mut ShapeKeys,
     operands: &[NodeId],
-    replaced: &IdMap<NodeId>,
+    (replaced, bounds): (&IdMap<NodeId>, &OperandBounds),
 ) -> Option<Numbered> {
     let mut nearest: Option<Numbered> = None;
     let mut has_loop = false;
-    for Kind { members, operand } in kinds(graph, keys, operands) {
+    for Kind { members, operand } in kinds(graph, keys, operands, bounds) {
         has_loop |= operand.is_some();
         let found = match operand {
             Some(operand) => vec![nearest_of_kind(graph, operand, &members)],
@@ -163,17 +163,17 @@ fn alone(
 }
 
 /// The nearest of similar operands with this common formula, by a loop.
-fn nearest_of_kind(graph: &mut Graph, operand: NodeId, members: &[usize]) -> Numbered {
+fn nearest_of_kind(graph: &mut Graph, operand: Operand, members: &[usize]) -> Numbered {
     let index = graph.variable(0, LoopVar::Index, Type::Scalar);
     let elements = members.iter().map(|&member| Const::new(Type::Scalar, &[member as f64]));
     let elements: Vec<Const> = elements.collect();
     let number = graph.element(Table { ty: Type::Scalar, elements }, index);
     let best = [0, 1].map(|part| graph.variable(0, LoopVar::State(part), Type::Scalar));
-    let is_nearer = graph.lt(operand, best[0]);
+    let is_nearer = graph.lt(operand.value, best[0]);
     let init = vec![graph.number(FAR), graph.number(0.0)];
-    let step = vec![graph.min(best[0], operand), graph.select(is_nearer, number, best[1])];
-    let margin = graph.number(0.0);
-    let skip = Some(SkipCondition { operand, margin });
+    let step = vec![graph.min(best[0], operand.value), graph.select(is_nearer, number, best[1])];
+    let [lower, upper] = operand.bounds;
+    let skip = Some(SkipCondition { lower, upper, margin: graph.number(0.0) });
     let result = loop_over(graph, members.len(), init, step, skip);
     Numbered { distance: result[0], number: result[1] }
 }

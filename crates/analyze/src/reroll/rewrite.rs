@@ -16,9 +16,9 @@ use sdfc_graph::{
 
 use crate::reroll::blended::{BlendedStep, blended_step};
 use crate::reroll::chain::{self, Chain};
-use crate::reroll::kinds::{Kind, grouped, kinds};
+use crate::reroll::kinds::{Kind, Operand, OperandBounds, grouped, kinds};
 use crate::reroll::loops::{MIN_OPERANDS, loop_over};
-use crate::reroll::template::ShapeKeys;
+use crate::reroll::shape_keys::ShapeKeys;
 
 /// A loop that stands for many operands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,10 +40,11 @@ pub(crate) struct Rerolled {
     pub(crate) replaced: IdMap<NodeId>,
 }
 
-/// Rewrites the roots with similar operands as loops.
-pub(crate) fn reroll(graph: &mut Graph, roots: &[NodeId]) -> Rerolled {
+/// Rewrites the roots with similar operands as loops. `bounds` are those of some operands.
+pub(crate) fn reroll(graph: &mut Graph, roots: &[NodeId], bounds: &OperandBounds) -> Rerolled {
     let mut rerolling = Rerolling {
         graph,
+        bounds,
         keys: ShapeKeys::default(),
         plan_of: IdMap::default(),
         plans: Vec::new(),
@@ -111,6 +112,7 @@ impl Part {
 /// The pass, with the plans that it has made.
 struct Rerolling<'g> {
     graph: &'g mut Graph,
+    bounds: &'g OperandBounds,
     keys: ShapeKeys,
     /// The index of a chain's plan, by the node that is the value of the chain.
     plan_of: IdMap<usize>,
@@ -171,7 +173,7 @@ impl Rerolling<'_> {
 
     fn plan_min(&mut self, operands: &[NodeId]) -> Vec<Part> {
         let (mut values, mut loops) = (Vec::new(), Vec::new());
-        for Kind { members, operand } in kinds(self.graph, &mut self.keys, operands) {
+        for Kind { members, operand } in kinds(self.graph, &mut self.keys, operands, self.bounds) {
             match operand {
                 Some(operand) => loops.push(self.min_loop(operand, members.len())),
                 None => values.extend(members.into_iter().map(|at| Part::Value(operands[at]))),
@@ -181,10 +183,11 @@ impl Rerolling<'_> {
         values
     }
 
-    fn min_loop(&mut self, operand: NodeId, operands: usize) -> Part {
+    fn min_loop(&mut self, operand: Operand, operands: usize) -> Part {
         let state = self.graph.variable(0, LoopVar::State(0), Type::Scalar);
-        let next = self.graph.min(state, operand);
-        let skip = Some(SkipCondition { operand, margin: self.graph.number(0.0) });
+        let next = self.graph.min(state, operand.value);
+        let [lower, upper] = operand.bounds;
+        let skip = Some(SkipCondition { lower, upper, margin: self.graph.number(0.0) });
         Part::Loop { next, skip, operands, blended: false }
     }
 

@@ -4,6 +4,7 @@ use sdfc_graph::{Graph, NodeId, Settings, Shadow, fold_transforms};
 
 use crate::cost::{cost, operations_outside_loops};
 use crate::reroll::cullable::cullable_loops;
+use crate::reroll::kinds::OperandBounds;
 use crate::reroll::rewrite::reroll;
 
 /// The strategy by which the similar operands of a scene become code.
@@ -76,7 +77,7 @@ fn prefers_loops(
     let Some(distance) = trial.node(distance) else { return (false, limit) };
     let mut trial = trial.graph;
     let folded = fold_transforms(&mut trial, &[distance]).roots;
-    let roots = reroll(&mut trial, &folded).roots;
+    let roots = reroll(&mut trial, &folded, &OperandBounds::default()).roots;
     let limit = unrolled_limit(settings, cullable_loops(&mut trial, &roots, lipschitz).len());
     // What no loop replaces has the same code either way.
     let replaced = operations.saturating_sub(operations_outside_loops(&trial, &roots));

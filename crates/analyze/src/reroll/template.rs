@@ -1,15 +1,14 @@
-//! Nodes that are equal up to constants, and the formulas they share.
+//! The formula that nodes share which are equal up to constants.
 //!
-//! Equal shape keys mean equal structure. [`template`] builds the common formula of nodes with
-//! equal keys, in which lists hold the constants that differ. A per-frame value may count as a
-//! constant: lists hold its factors as a linear function.
+//! [`template`] builds the common formula of nodes with equal [`ShapeKeys`], in which lists hold the
+//! constants that differ.
 
 use rustc_hash::FxHashMap;
-use sdfc_graph::{
-    Binary, Const, Graph, IdMap, Node, NodeId, Stage, Table, Ternary, Type, Unary, reachable,
-};
+use sdfc_graph::{Binary, Const, Graph, Node, NodeId, Stage, Table, TableId, Ternary, Type};
 
-use crate::reroll::linear::{Linear, Linears, MAX_INPUTS};
+use crate::reroll::linear::{Linear, MAX_INPUTS};
+use crate::reroll::nested::{JoinedList, NestedLoop, nested_variable};
+use crate::reroll::shape_keys::{Operation, ShapeKeys, View};
 
 /// Largest number of subexpressions of a template. Larger ones are not worth a loop.
 const MAX_COLUMNS: usize = 4096;
@@ -17,201 +16,27 @@ const MAX_COLUMNS: usize = 4096;
 /// Largest number of per-frame operations that the iterations of a loop repeat.
 const MAX_FRAME_OPERATIONS: usize = 16;
 
-/// An operation without its arguments.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-enum Operation {
-    Unary(Unary),
-    Binary(Binary),
-    Ternary(Ternary),
-    Splat(Type),
-    Compose(Type),
-    Swizzle(Type, [u8; 4]),
-    Transform,
-}
-
-/// The structure of a node without its constants.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-enum Structure {
-    /// Any constant of a type, or any value that counts as one.
-    Constant(Type),
-    /// Exactly this node.
-    Same(NodeId),
-    /// An operation and the keys of its arguments.
-    Operation(u32, [u32; 4]),
-}
-
-/// A node as an operation and its arguments. The arguments of sums and products are in an order
-/// that does not depend on the order in which they were built.
-enum View {
-    /// A constant, or a value that counts as one, which may differ between similar nodes.
-    Constant,
-    /// A node that must be the same in all similar nodes.
-    Same,
-    /// An operation with arguments.
-    Operation(Operation, Vec<NodeId>),
-}
-
-/// The per-frame values in which similar nodes may differ.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-enum PerFrame {
-    /// All that have a finite range.
-    #[default]
-    Any,
-    /// Linear functions of params and time. Other values have the same structure.
-    Linear,
-    /// None.
-    Same,
-}
-
-/// Shape keys: numbers that are equal for nodes that are equal up to constants.
-#[derive(Debug, Default)]
-pub(super) struct ShapeKeys {
-    known: IdMap<u32>,
-    keys: FxHashMap<Structure, u32>,
-    operations: FxHashMap<Operation, u32>,
-    linears: Linears,
-    per_frame: PerFrame,
-}
-
-impl ShapeKeys {
-    /// Keys of nodes that differ in fewer per-frame values; `None` if these differ in none.
-    pub(super) fn stricter(&self) -> Option<Self> {
-        let per_frame = match self.per_frame {
-            PerFrame::Any => PerFrame::Linear,
-            PerFrame::Linear => PerFrame::Same,
-            PerFrame::Same => return None,
-        };
-        let mut stricter = Self { per_frame, ..Self::default() };
-        stricter.linears.of_raw_inputs = true;
-        Some(stricter)
-    }
-
-    /// Computes the keys of all nodes that the roots depend on.
-    pub(super) fn compute(&mut self, graph: &mut Graph, roots: &[NodeId]) {
-        for id in reachable(graph, roots) {
-            self.compute_one(graph, id);
-        }
-    }
-
-    /// The key of a node; `u32::MAX` if it was not computed.
-    pub(super) fn of(&self, id: NodeId) -> u32 {
-        self.known.get(id).unwrap_or(u32::MAX)
-    }
-
-    fn compute_one(&mut self, graph: &mut Graph, id: NodeId) {
-        if self.known.get(id).is_some() {
-            return;
-        }
-        let structure = match self.view(graph, id) {
-            View::Constant => Structure::Constant(graph.ty(id)),
-            View::Same => Structure::Same(id),
-            View::Operation(operation, arguments) => {
-                let next = self.operations.len() as u32;
-                let operation = *self.operations.entry(operation).or_insert(next);
-                let mut argument_keys = [u32::MAX; 4];
-                for (number, &argument) in argument_keys.iter_mut().zip(&arguments) {
-                    // The view negates constants, so this one may be new.
-                    if self.known.get(argument).is_none() {
-                        self.compute_one(graph, argument);
-                    }
-                    *number = self.of(argument);
-                }
-                Structure::Operation(operation, argument_keys)
-            }
-        };
-        let next = self.keys.len() as u32;
-        let key = *self.keys.entry(structure).or_insert(next);
-        self.known.insert(id, key);
-    }
-
-    /// A per-frame value that counts as a constant, as a linear function.
-    fn linear(&mut self, graph: &mut Graph, id: NodeId) -> Option<Linear> {
-        match self.per_frame {
-            PerFrame::Any | PerFrame::Linear => self.linears.of(graph, id),
-            PerFrame::Same => None,
-        }
-    }
-
-    /// True for a constant, or a value that counts as one.
-    fn is_constant(&mut self, graph: &mut Graph, id: NodeId) -> bool {
-        graph.as_const(id).is_some() || self.linear(graph, id).is_some()
-    }
-
-    /// Takes a node apart.
-    fn view(&mut self, graph: &mut Graph, id: NodeId) -> View {
-        if graph.stage(id) < Stage::Point && graph.ty(id) == Type::Bool {
-            return View::Same;
-        }
-        if self.is_constant(graph, id) {
-            return View::Constant;
-        }
-        if self.per_frame == PerFrame::Same && graph.stage(id) < Stage::Point {
-            return View::Same;
-        }
-        let node = graph.node(id);
-        let arguments: Vec<NodeId> = graph.arguments(id).collect();
-        let operation = match node {
-            Node::Unary(op, _) => Operation::Unary(op),
-            Node::Binary(Binary::Sub, a, b) if self.is_constant(graph, b) => {
-                let b = graph.neg(b);
-                return View::Operation(Operation::Binary(Binary::Add), self.sorted(graph, a, b));
-            }
-            Node::Binary(op @ (Binary::Add | Binary::Mul), a, b) => {
-                return View::Operation(Operation::Binary(op), self.sorted(graph, a, b));
-            }
-            Node::Binary(op, ..) => Operation::Binary(op),
-            Node::Ternary(op, _) => Operation::Ternary(op),
-            Node::Splat(ty, _) => Operation::Splat(ty),
-            Node::Compose(ty, _) => Operation::Compose(ty),
-            Node::Swizzle(ty, _, lanes) => Operation::Swizzle(ty, lanes),
-            Node::Transform(..) => Operation::Transform,
-            Node::Const(_)
-            | Node::Point(..)
-            | Node::Frame(..)
-            | Node::Variable(..)
-            | Node::Loop(..)
-            | Node::Element(..)
-            | Node::Sample(..)
-            | Node::MaterialAt(..) => return View::Same,
-        };
-        View::Operation(operation, arguments)
-    }
-
-    /// The operands of a sum or product in order of their rank.
-    fn sorted(&mut self, graph: &mut Graph, a: NodeId, b: NodeId) -> Vec<NodeId> {
-        if self.rank(graph, b) < self.rank(graph, a) { vec![b, a] } else { vec![a, b] }
-    }
-
-    /// The sort key of an operand. The steps of a blend have no shape key, so their kind of
-    /// operation comes first.
-    fn rank(&mut self, graph: &mut Graph, id: NodeId) -> (usize, u32) {
-        let node = graph.node(id);
-        let kinds = [
-            self.is_constant(graph, id),
-            matches!(node, Node::Binary(Binary::Min, ..)),
-            matches!(node, Node::Binary(Binary::Mul, ..)),
-        ];
-        let kind = kinds.into_iter().position(|is| is).unwrap_or(kinds.len());
-        (kind, self.of(id))
-    }
-}
-
 /// A subexpression of the template.
-enum Expression {
+pub(super) enum Expression {
     /// The same node in every iteration, or one that the caller gave.
     Same(NodeId),
     /// Constants that differ, by the index of their column.
     Column(usize),
     /// An operation on other subexpressions.
     Operation(Operation, Vec<usize>),
+    /// The element of a list at the index that another subexpression gives.
+    Element(TableId, usize),
+    /// A part of the state after a loop.
+    Loop(NestedLoop),
 }
 
-struct Merging<'a> {
-    graph: &'a mut Graph,
+pub(super) struct Merging<'a> {
+    pub(super) graph: &'a mut Graph,
     keys: &'a mut ShapeKeys,
-    expressions: Vec<Expression>,
+    pub(super) expressions: Vec<Expression>,
     known: FxHashMap<Vec<NodeId>, usize>,
     columns: Vec<Vec<Const>>,
+    pub(super) joined: FxHashMap<Vec<TableId>, JoinedList>,
     /// The number of per-frame operations that iterations repeat.
     frame_operations: usize,
 }
@@ -226,8 +51,9 @@ pub(super) fn template(
     given: &[(&[NodeId], NodeId)],
     index: NodeId,
 ) -> Option<Vec<NodeId>> {
-    let (expressions, known, columns) = Default::default();
-    let mut merging = Merging { graph, keys, expressions, known, columns, frame_operations: 0 };
+    let (expressions, known, columns, joined) = Default::default();
+    let frame_operations = 0;
+    let mut merging = Merging { graph, keys, expressions, known, columns, joined, frame_operations };
     for (list, formula) in given {
         merging.add(list.to_vec(), Expression::Same(*formula));
     }
@@ -246,7 +72,7 @@ impl Merging<'_> {
         index
     }
 
-    fn expression(&mut self, column: Vec<NodeId>) -> Option<usize> {
+    pub(super) fn expression(&mut self, column: Vec<NodeId>) -> Option<usize> {
         if let Some(&known) = self.known.get(&column) {
             return Some(known);
         }
@@ -259,7 +85,13 @@ impl Merging<'_> {
     fn new_expression(&mut self, column: Vec<NodeId>) -> Option<usize> {
         let (&first, rest) = column.split_first()?;
         if rest.iter().all(|&id| id == first) {
-            return Some(self.add(column, Expression::Same(first)));
+            if self.graph.loops_around(first) == 0 {
+                return Some(self.add(column, Expression::Same(first)));
+            }
+            if let Node::Variable(..) = self.graph.node(first) {
+                let nested = nested_variable(self.graph, first);
+                return Some(self.add(column, Expression::Same(nested)));
+            }
         }
         let constants: Option<Vec<Const>> =
             column.iter().map(|&id| self.graph.as_const(id)).collect();
@@ -300,7 +132,18 @@ impl Merging<'_> {
         let arguments: Option<Vec<usize>> =
             lists.into_iter().map(|list| self.expression(list)).collect();
         let arguments = arguments?;
-        Some(self.add(column, Expression::Operation(operation, arguments)))
+        let expression = match operation {
+            Operation::Element(_) => self.element(&column, arguments[0])?,
+            Operation::Loop(form, part) => self.nested_loop(&column, (form, part), arguments)?,
+            Operation::Unary(_)
+            | Operation::Binary(_)
+            | Operation::Ternary(_)
+            | Operation::Splat(_)
+            | Operation::Compose(_)
+            | Operation::Swizzle(..)
+            | Operation::Transform => Expression::Operation(operation, arguments),
+        };
+        Some(self.add(column, expression))
     }
 
     /// The linear functions of a column as one function of the inputs, whose factors are columns.
@@ -330,12 +173,12 @@ impl Merging<'_> {
     }
 
     /// The subexpression of a column of constants.
-    fn constants(&mut self, ty: Type, lanes: impl Iterator<Item = [f64; 4]>) -> Option<usize> {
+    pub(super) fn constants(&mut self, ty: Type, lanes: impl Iterator<Item = [f64; 4]>) -> Option<usize> {
         let column = lanes.map(|lanes| self.graph.constant(ty, &lanes[..ty.width()])).collect();
         self.expression(column)
     }
 
-    fn push(&mut self, operation: Operation, arguments: Vec<usize>) -> usize {
+    pub(super) fn push(&mut self, operation: Operation, arguments: Vec<usize>) -> usize {
         self.expressions.push(Expression::Operation(operation, arguments));
         self.expressions.len() - 1
     }
@@ -352,6 +195,8 @@ impl Merging<'_> {
                     let arguments: Vec<NodeId> = arguments.iter().map(|&at| values[at]).collect();
                     build_operation(self.graph, *operation, &arguments)
                 }
+                Expression::Element(list, at) => self.graph.element_of(*list, values[*at]),
+                Expression::Loop(nested) => nested.build(self.graph, &values),
             });
         }
         values

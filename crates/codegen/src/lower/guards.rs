@@ -1,7 +1,7 @@
 //! Guarded operands, which are evaluated in a branch.
 
 use rustc_hash::{FxHashMap, FxHashSet};
-use sdfc_graph::{Graph, Node, NodeId, guarded_value};
+use sdfc_graph::{Graph, GuardedValue, Loop, LoopVar, Node, NodeId, guarded_value};
 
 use super::body::Value;
 use super::inputs::Inputs;
@@ -23,10 +23,6 @@ impl Lowering<'_> {
     ) -> (Branches, Vec<NodeId>) {
         let graph = &self.program.graph;
         let mut branches = Branches::default();
-        // The rest of an iteration may read what was computed for its condition.
-        if self.iterations.iter().any(Option::is_some) {
-            return (branches, nodes.to_vec());
-        }
         let mut inside: FxHashSet<NodeId> = FxHashSet::default();
         // A later value may have an earlier one in its branch.
         for &id in nodes.iter().rev() {
@@ -70,6 +66,34 @@ impl Lowering<'_> {
         self.forget(within.iter());
         Ok(self.body.load(variable, "s"))
     }
+}
+
+/// The guard of a loop that takes the minimum of its operands.
+pub(super) fn guard_of_loop(graph: &Graph, looped: &Loop) -> Option<GuardedValue> {
+    let &[step] = looped.step.as_slice() else { return None };
+    let guarded = guarded_value(graph, step, &[])?;
+    let is_state = matches!(graph.node(guarded.without), Node::Variable(depth, LoopVar::State(0), _)
+        if depth == looped.depth);
+    is_state.then_some(guarded)
+}
+
+/// Those of ascending nodes that are read for the roots.
+pub(super) fn nodes_for(
+    graph: &Graph,
+    nodes: &[NodeId],
+    roots: &[NodeId],
+    inputs: &Inputs,
+) -> Vec<NodeId> {
+    let mut read: FxHashSet<NodeId> = roots.iter().copied().collect();
+    let mut found = Vec::new();
+    for &id in nodes.iter().rev() {
+        if read.contains(&id) {
+            found.push(id);
+            read.extend(reads(graph, id, inputs));
+        }
+    }
+    found.reverse();
+    found
 }
 
 /// The nodes that are read for `root` alone, and `root` itself, if it is read once; all nodes are

@@ -10,6 +10,7 @@ use rustc_hash::FxHashMap;
 use sdfc_graph::{Binary, Const, IdMap, LoopId, Node, NodeId, Program, Type};
 
 use super::body::{Body, Value};
+use super::guards::Branches;
 use super::inputs::{Inputs, frame_name, input_name};
 use super::iteration::Iteration;
 use super::types;
@@ -162,7 +163,17 @@ impl<'a> Lowering<'a> {
     /// Computes ascending nodes, each near its first use and after its arguments.
     pub(super) fn visit(&mut self, roots: &[NodeId], nodes: &[NodeId]) -> Result<(), Error> {
         let (guarded, nodes) = self.without_guarded(roots, nodes);
-        for id in scheduled(&self.program.graph, roots, &nodes, self.inputs) {
+        self.visit_with(&guarded, roots, &nodes)
+    }
+
+    /// The same, with these branches.
+    pub(super) fn visit_with(
+        &mut self,
+        guarded: &Branches,
+        roots: &[NodeId],
+        nodes: &[NodeId],
+    ) -> Result<(), Error> {
+        for id in scheduled(&self.program.graph, roots, nodes, self.inputs) {
             let node = self.program.graph.node(id);
             if matches!(node, Node::Const(_)) {
                 continue;
