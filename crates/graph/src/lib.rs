@@ -96,7 +96,7 @@ pub use node::{
     Binary, Const, Dim, FrameInput, LoopId, LoopVar, MaterialField, Node, NodeId, ShapeId, Stage,
     SurfaceVector, TableId, Ternary, Type, Unary,
 };
-pub use polynomial::{Polynomial, similarity_scale_squared};
+pub use polynomial::{Polynomial, similarity_scale_squared, squared_lengths_of_orthogonal};
 pub use program::{CullableLoop, Program, Rays};
 pub use range::Range;
 pub use scene::{

@@ -193,21 +193,27 @@ impl Polynomial {
 /// rows have the same length and any two are orthogonal for all values of the atoms. `None` for
 /// other matrices.
 pub fn similarity_scale_squared(rows: &[[Polynomial; 3]]) -> Option<Polynomial> {
+    let mut squares = squared_lengths_of_orthogonal(rows)?;
+    let square = squares.pop()?;
+    squares.iter().all(|other| *other == square).then_some(square)
+}
+
+/// The squared lengths of a matrix's rows, if any two rows are orthogonal for all values of the
+/// atoms. `None` for other matrices.
+pub fn squared_lengths_of_orthogonal(rows: &[[Polynomial; 3]]) -> Option<Vec<Polynomial>> {
     let product = |a: &[Polynomial; 3], b: &[Polynomial; 3]| -> Option<Polynomial> {
         (0..3).try_fold(Polynomial::zero(), |sum, i| Some(sum.plus(&a[i].times(&b[i])?)))
     };
-    let square = product(rows.first()?, rows.first()?)?;
+    let mut squares = Vec::with_capacity(rows.len());
     for (i, row) in rows.iter().enumerate() {
-        if product(row, row)? != square {
-            return None;
-        }
+        squares.push(product(row, row)?);
         for other in &rows[i + 1..] {
             if product(row, other)? != Polynomial::zero() {
                 return None;
             }
         }
     }
-    Some(square)
+    Some(squares)
 }
 
 /// The monomial with every sin² replaced by 1 - cos², and the square of the last lane of every

@@ -35,7 +35,7 @@ pub fn inspect(sources: &mut Sources, file: FileId, resolver: &dyn Resolver) -> 
 
 /// Elaborates a scene without errors. Returns the diagnostics that only elaboration finds.
 pub fn elaborate(program: &Program, resolver: &dyn Resolver) -> Vec<Diagnostic> {
-    elab::elaborate(program, &Assets::new(resolver), &elab::CompileValues::new()).1
+    elab::elaborate(program, &Assets::new(resolver), &elab::CompileValues::new(), false).1
 }
 
 /// Parses and checks a scene in which the name `cursor` marks the position of the cursor. So

@@ -93,6 +93,8 @@ pub struct Options<'v> {
     pub focus: Option<u32>,
     /// Values for the params that decide what the scene consists of; `None` for their defaults.
     pub values: Option<&'v CompileValues>,
+    /// All params are constants. Without effect on live literals.
+    pub constant_params: bool,
     /// Arguments of `camera(...)` that replace the scene's camera, such as `eye: [4, 3, 5]`. They
     /// can use the names of the scene.
     pub camera: Option<&'v str>,
@@ -116,7 +118,7 @@ pub fn front_with(
     let (elaborated, of_elaboration) = if options.live_literals {
         live_literals::elaborate(&program, &assets, sources, file, options.focus, values)
     } else {
-        elab::elaborate(&program, &assets, values)
+        elab::elaborate(&program, &assets, values, options.constant_params)
     };
     found.extend(of_elaboration);
     (elaborated, found)

@@ -39,7 +39,7 @@ pub(crate) fn elaborate(
     focus: Option<u32>,
     values: &CompileValues,
 ) -> (Option<Elaborated>, Vec<Diagnostic>) {
-    let plain = elab::elaborate(program, assets, values);
+    let plain = elab::elaborate(program, assets, values, false);
     let Some(found) = &plain.0 else { return plain };
     let mut params = ParamInputs::new(program.params.len(), values);
     let declared = found.scene.params.iter().enumerate();

@@ -1,6 +1,6 @@
-//! Similarities whose coefficients are per-frame values, such as rotations by a param.
+//! Linear maps whose coefficients are per-frame values, such as rotations by a param.
 
-use sdfc_graph::{Graph, Node, NodeId, Polynomial, similarity_scale_squared};
+use sdfc_graph::{Binary, Graph, Node, NodeId, Polynomial, squared_lengths_of_orthogonal};
 
 use crate::certify::affine::is_fixed;
 use crate::certify::branches::{Lane, branches};
@@ -8,14 +8,21 @@ use crate::certify::branches::{Lane, branches};
 /// Largest number of operations that are followed.
 const MAX_STEPS: usize = 128;
 
-/// Finds values of which the lanes are linear functions that scale all distances alike, for all
-/// values of the params. Returns the factor and the values. `None` if there are none, or if these
-/// are the lanes themselves.
-pub(super) fn similarity(
+/// A rotation, after which each lane is scaled by a number.
+pub(super) struct ScaledRotation {
+    /// The values that are rotated.
+    pub(super) values: Vec<Lane>,
+    /// The factors of the lanes.
+    pub(super) factors: Vec<f64>,
+}
+
+/// Finds values of which the lanes are a scaled rotation for all values of the params. `None` if
+/// there are none, or if these are the lanes themselves.
+pub(super) fn scaled_rotation(
     graph: &mut Graph,
     lanes: &[Lane],
     level: u16,
-) -> Option<(f64, Vec<Lane>)> {
+) -> Option<ScaledRotation> {
     let mut sums = Sums { values: Vec::new(), rows: Vec::new(), steps: MAX_STEPS };
     for &lane in lanes {
         sums.rows.push(Default::default());
@@ -24,8 +31,10 @@ pub(super) fn similarity(
     if sums.values == lanes {
         return None;
     }
-    let square = similarity_scale_squared(&sums.rows)?.constant()?;
-    Some((square.sqrt(), sums.values))
+    let squares = squared_lengths_of_orthogonal(&sums.rows)?;
+    let factors: Option<Vec<f64>> =
+        squares.iter().map(|square| Some(square.constant()?.sqrt())).collect();
+    Some(ScaledRotation { values: sums.values, factors: factors? })
 }
 
 /// Linear functions of at most three values.
@@ -77,16 +86,18 @@ fn terms(graph: &mut Graph, lane: Lane, level: u16) -> Option<Vec<(Lane, Polynom
         return Some(terms.iter().map(number).collect());
     }
     let is_fixed = |id: NodeId| is_fixed(graph, id, level);
-    match graph.node(node) {
-        Node::Binary(sdfc_graph::Binary::Mul, a, b) if is_fixed(a) || is_fixed(b) => {
-            let (factor, value) = if is_fixed(a) { (a, b) } else { (b, a) };
-            Some(vec![(own(graph, value, at), coefficient(graph, factor, at)?)])
-        }
-        Node::Transform(columns, v) if columns.iter().all(|&column| is_fixed(column)) => {
-            let term = |i: usize| Some((own(graph, v, i), coefficient(graph, columns[i], at)?));
-            (0..columns.len()).map(term).collect()
-        }
-        _ => None,
+    if let Node::Binary(Binary::Mul, a, b) = graph.node(node)
+        && (is_fixed(a) || is_fixed(b))
+    {
+        let (factor, value) = if is_fixed(a) { (a, b) } else { (b, a) };
+        Some(vec![(own(graph, value, at), coefficient(graph, factor, at)?)])
+    } else if let Node::Transform(columns, v) = graph.node(node)
+        && columns.iter().all(|&column| is_fixed(column))
+    {
+        let term = |i: usize| Some((own(graph, v, i), coefficient(graph, columns[i], at)?));
+        (0..columns.len()).map(term).collect()
+    } else {
+        None
     }
 }
 

@@ -13,7 +13,7 @@ use sdfc_graph::{Graph, Node, NodeId};
 
 use crate::certify::affine::{is_fixed, largest_singular_value};
 use crate::certify::branches::{Lane, branches, counterpart};
-use crate::certify::per_frame::similarity;
+use crate::certify::per_frame::scaled_rotation;
 
 /// Largest number of operations that are followed.
 const MAX_STEPS: usize = 512;
@@ -57,9 +57,9 @@ pub(crate) fn constant(
             few = Some(map.clone()).filter(|_| step > 0);
         }
         if !map.expand(graph, level) {
-            if let Some((scale, columns)) = similarity(graph, &narrow.columns, level) {
-                factor *= narrow.norm() * scale;
-                map = Map::identity(columns);
+            if let Some(rotation) = scaled_rotation(graph, &narrow.columns, level) {
+                factor *= narrow.scaled(&rotation.factors).norm();
+                map = Map::identity(rotation.values);
                 continue;
             }
             // The map ends at a vector that is not piecewise linear itself.
@@ -114,6 +114,17 @@ impl Map {
         let &(first, _) = self.columns.first()?;
         let is_one = self.columns.iter().all(|&(node, _)| node == first);
         (is_one && graph.ty(first).width() <= 3).then_some(first)
+    }
+
+    /// The map after each value has been multiplied by a factor.
+    fn scaled(&self, factors: &[f64]) -> Self {
+        let mut scaled = self.clone();
+        for matrix in &mut scaled.matrices {
+            for (column, factor) in matrix.iter_mut().zip(factors) {
+                *column = column.map(|entry| factor * entry);
+            }
+        }
+        scaled
     }
 
     /// The largest operator norm of a matrix with at most three columns.

@@ -20,7 +20,8 @@ pub fn run(args: &args::Bake, console: &Console) -> Result<(), Failure> {
     let (result, report) = (args.output.as_deref(), args.json.as_deref());
     let output = WithReport::new(&args.file, result, "npy", report)?;
     let format = GridFormat::of(&output.path).map_err(Failure::Call)?;
-    let scene = super::scene_with(&args.file, super::compiler(), &args.values.params.set, console)?;
+    let compiler = super::compiler_of_constants();
+    let scene = super::scene_with(&args.file, compiler, &args.values.params.set, console)?;
     let frame = super::values(&scene, args.values.time);
     let options = BakeOptions::new().resolution(args.resolution).frame(frame.clone());
     let grid = super::mesh_work("baking", console, |progress| scene.bake(&options, progress))?;

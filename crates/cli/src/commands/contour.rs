@@ -20,7 +20,8 @@ pub fn run(args: &args::Contour, console: &Console) -> Result<(), Failure> {
     let (result, report) = (args.output.as_deref(), args.json.as_deref());
     let output = WithReport::new(&args.file, result, "svg", report)?;
     let format = ContourFormat::of(&output.path).map_err(Failure::Call)?;
-    let scene = super::scene_with(&args.file, super::compiler(), &args.values.params.set, console)?;
+    let compiler = super::compiler_of_constants();
+    let scene = super::scene_with(&args.file, compiler, &args.values.params.set, console)?;
     let options = super::mesh_options(&scene, &args.exactness, args.values.time);
     let options = options.has_arcs(!args.lines);
     let contour = super::mesh_work("tracing", console, |progress| {

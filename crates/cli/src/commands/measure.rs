@@ -16,7 +16,8 @@ use crate::output;
 /// The scene cannot be read, has errors, draws nothing or has no limit; a param does not take its
 /// value; Ctrl-C.
 pub fn run(args: &args::Measure, console: &Console) -> Result<(), Failure> {
-    let scene = super::scene_with(&args.file, super::compiler(), &args.values.params.set, console)?;
+    let compiler = super::compiler_of_constants();
+    let scene = super::scene_with(&args.file, compiler, &args.values.params.set, console)?;
     let frame = super::values(&scene, args.values.time);
     let options = MeasureOptions::new().relative(args.error_relative).frame(frame);
     let options = args.max_cells.map_or(options.clone(), |limit| options.max_cells(limit));

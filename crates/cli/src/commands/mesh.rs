@@ -20,7 +20,8 @@ pub fn run(args: &args::Mesh, console: &Console) -> Result<(), Failure> {
     let (result, report) = (args.output.as_deref(), args.json.as_deref());
     let output = WithReport::new(&args.file, result, "stl", report)?;
     let format = MeshFormat::of(&output.path).map_err(Failure::Call)?;
-    let scene = super::scene_with(&args.file, super::compiler(), &args.values.params.set, console)?;
+    let compiler = super::compiler_of_constants();
+    let scene = super::scene_with(&args.file, compiler, &args.values.params.set, console)?;
     let options = super::mesh_options(&scene, &args.exactness, args.values.time);
     let mesh = super::mesh_work("meshing", console, |progress| scene.mesh(&options, progress))?;
     let bytes = format.encode(&mesh).map_err(|error| Failure::Call(error.to_string()))?;

@@ -169,6 +169,11 @@ fn compiler() -> Compiler<'static> {
     Compiler::new().verify(true)
 }
 
+/// Returns the compiler of commands that work with one set of params.
+fn compiler_of_constants() -> Compiler<'static> {
+    compiler().constant_params(true)
+}
+
 /// Returns the compiler, with live literals if asked for.
 fn compiler_with(live_literals: bool) -> Compiler<'static> {
     if live_literals { compiler().live_literals(None) } else { compiler() }

@@ -62,13 +62,17 @@ pub use param_inputs::CompileValues;
 /// is one, there may be warnings.
 ///
 /// A param that decides what the scene consists of is a constant: its value among `values`, or its
-/// default. All other params are per-frame inputs.
+/// default. All other params are per-frame inputs, unless they are to be `constant`.
 pub fn elaborate(
     program: &hir::Program,
     assets: &Assets<'_>,
     values: &CompileValues,
+    constant: bool,
 ) -> (Option<Elaborated>, Vec<Diagnostic>) {
     let mut params = ParamInputs::new(program.params.len(), values);
+    if constant {
+        params.fix_all();
+    }
     loop {
         let result = elaborate_with(program, assets, params.clone());
         if result.elaborated.is_some() || !params.fix(&result.structural) {

@@ -48,8 +48,13 @@ impl<'v> ParamInputs<'v> {
         let is_new = self.fixed.len() > before;
         self.elaborations += 1;
         if is_new && self.elaborations == MAX_ELABORATIONS {
-            self.fixed.extend(0..self.first_literal);
+            self.fix_all();
         }
         is_new
+    }
+
+    /// Makes all params constant.
+    pub fn fix_all(&mut self) {
+        self.fixed.extend(0..self.first_literal);
     }
 }
