@@ -1,8 +1,8 @@
 //! The passes from a scene to a flat program.
 
 use sdfc_graph::{
-    Bounds, Dim, ExpandError, Expander, Graph, NodeId, Program, Rays, Scene, ShapeId,
-    SurfaceVector, Unary, best_gradient, reachable, substitute, uniforms,
+    Bounds, Dim, ExpandError, Expander, Graph, Light, NodeId, Program, Rays, Scene, Settings, Shadow,
+    ShapeId, SurfaceVector, Unary, best_gradient, reachable, substitute, uniforms,
 };
 
 use crate::analytic::operands::Operands;
@@ -115,6 +115,11 @@ fn flatten(
     }
     let mut flat = fields(graph, whole, &operands);
     let count = flat.len();
+    if uses_estimate(&program.settings) && !field.divided.is_empty() && !uses_loops {
+        let undivided = expander.field(graph, root, point)?;
+        flat.push(graph.max(undivided, whole));
+    }
+    let with_estimate = flat.len();
     if has_material {
         flat.extend(expander.material(graph, root, point)?);
     }
@@ -137,7 +142,9 @@ fn flatten(
         operand_bounds.iter().map(|&[value, lower, upper]| (value, [lower, upper])).collect();
     let (flat, marched) = flat.split_at(with_material);
     let (marched, _) = marched.as_chunks();
-    let (fields, material) = flat.split_at(count);
+    let (fields, material) = flat.split_at(with_estimate);
+    let (fields, estimate) = fields.split_at(count);
+    program.estimate = estimate.first().copied();
     let (mut fields, mut material, mut loops) = (fields.to_vec(), material.to_vec(), Vec::new());
     if uses_loops {
         let rerolled = reroll(graph, &fields, &operand_bounds);
@@ -204,6 +211,12 @@ fn materials(
         fields.map(|field| substitute(graph, field, &pairs))
     };
     (Some(replaced(graph, [outward; 2])), Some(replaced(graph, seen)))
+}
+
+/// True if an estimate of the distance serves a picture better than a lower bound.
+fn uses_estimate(settings: &Settings) -> bool {
+    let is_soft = |light: &Light| matches!(light.shadow, Shadow::Soft(_));
+    settings.occlusion.is_some() || settings.lights.iter().any(is_soft)
 }
 
 /// True if the field of a shape is divided by a constant that can be large.

@@ -70,6 +70,10 @@ pub struct Program {
     /// Signed distance, already divided by Lipschitz constants where needed. `None`: nothing is
     /// drawn.
     pub distance: Option<NodeId>,
+    /// What the distance is likely to be, for soft shadows and ambient occlusion: `distance`
+    /// without its divisions by Lipschitz constants, but nowhere less than it. `None` if that is
+    /// `distance` itself, if nothing needs it, or if similar operands are loops.
+    pub estimate: Option<NodeId>,
     /// Gradient of `distance`, a vector of the point's type.
     pub gradient: Option<NodeId>,
     /// What a pixel of a planar picture shows: linear red, green and blue, and the distance. The
@@ -167,6 +171,7 @@ impl Program {
         let Rays { first_hit, analytic, marched, clip, copies } = &mut self.rays;
         let fields = [
             &mut self.distance,
+            &mut self.estimate,
             &mut self.gradient,
             &mut self.planar_pixel,
             &mut self.range,
@@ -208,7 +213,8 @@ impl Program {
     pub fn roots(&self) -> Vec<NodeId> {
         // Destructured so that a new function does not compile until it is handled here.
         let Rays { first_hit, analytic, marched, clip, copies } = self.rays;
-        let fields = [self.distance, self.gradient, self.range, self.slope_range];
+        let fields =
+            [self.distance, self.estimate, self.gradient, self.range, self.slope_range];
         let rays = [first_hit, analytic, marched, clip, copies];
         let material = self.material.into_iter().chain(self.seen_material).flatten();
         let culling_bounds = self.cullable_loops.iter().map(|cullable| cullable.culling_bounds);

@@ -64,6 +64,9 @@ pub struct Features {
     pub records_gaps: bool,
     /// The field is divided by a large Lipschitz constant.
     pub loose: bool,
+    /// The field is divided by Lipschitz constants; soft shadows and ambient occlusion use what it
+    /// is without.
+    pub estimated: bool,
     /// The scene's functions contain loops.
     pub loops: bool,
 }
@@ -86,7 +89,7 @@ impl Features {
     }
 
     /// The overrides of `features.wgsl` and their values.
-    pub fn overrides(self) -> [(&'static str, bool); 32] {
+    pub fn overrides(self) -> [(&'static str, bool); 33] {
         // Destructured so that a new feature does not compile until it is handled here.
         let Self {
             planar: _,
@@ -117,6 +120,7 @@ impl Features {
             proved,
             records_gaps,
             loose,
+            estimated,
             loops,
         } = self;
         [
@@ -151,6 +155,7 @@ impl Features {
             ("PROVED", proved),
             ("RECORDS_GAPS", records_gaps),
             ("LOOSE", loose),
+            ("ESTIMATED", estimated),
             ("HAS_LOOPS", loops),
         ]
     }

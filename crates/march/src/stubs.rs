@@ -4,6 +4,9 @@
 
 /// `fn field(p: vec3f) -> f32`, the signed distance.
 pub const FIELD: &str = "field";
+/// `fn field_estimate(p: vec3f) -> f32`, what the distance is likely to be. Called if
+/// [`Features::estimated`](crate::Features::estimated) is set.
+pub const ESTIMATE: &str = "field_estimate";
 /// `fn field_gradient(p: vec3f) -> vec3f`, the spatial derivative of the distance. A method with a
 /// gradient of its own does not have this stub.
 pub const GRADIENT: &str = "field_gradient";

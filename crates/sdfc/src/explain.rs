@@ -191,6 +191,7 @@ pub(crate) fn feature_names(features: Features) -> Vec<String> {
         proved: _,
         records_gaps: _,
         loose: _,
+        estimated: _,
         loops: _,
     } = features;
     let names = [

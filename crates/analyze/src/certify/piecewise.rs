@@ -37,7 +37,8 @@ pub(crate) fn constant(
     let mut map = Map::identity((0..width).map(|lane| (node, lane)).collect());
     let mut factor = 1.0;
     let mut few: Option<Map> = None;
-    let mut narrow = map.clone();
+    // The maps with at most three columns since the last rotation by a per-frame value.
+    let mut narrow: Vec<Map> = Vec::new();
     for step in 0..MAX_STEPS {
         map.drop_columns(graph, level);
         let end = map.end(graph);
@@ -53,13 +54,18 @@ pub(crate) fn constant(
             return None;
         }
         if map.columns.len() <= 3 {
-            narrow = map.clone();
+            narrow.push(map.clone());
             few = Some(map.clone()).filter(|_| step > 0);
         }
         if !map.expand(graph, level) {
-            if let Some(rotation) = scaled_rotation(graph, &narrow.columns, level) {
-                factor *= narrow.scaled(&rotation.factors).norm();
-                map = Map::identity(rotation.values);
+            let rotated = |before: &Map| {
+                let rotation = scaled_rotation(graph, &before.columns, level)?;
+                Some((before.scaled(&rotation.factors).norm(), rotation.values))
+            };
+            if let Some((norm, values)) = narrow.iter().rev().find_map(rotated) {
+                factor *= norm;
+                map = Map::identity(values);
+                narrow.clear();
                 continue;
             }
             // The map ends at a vector that is not piecewise linear itself.

@@ -77,6 +77,9 @@ impl<'p> PictureLinker<'p> {
         if steps || features.occlusion {
             bindings.push(StubBinding::of_point(Some(Role::Distance), stubs::FIELD, distance));
         }
+        if let Some(estimate) = program.estimate.filter(|_| features.estimated) {
+            bindings.push(StubBinding::of_point(None, stubs::ESTIMATE, estimate));
+        }
         if method.gradient.is_none() {
             bindings.push(StubBinding::of_point(Some(Role::Gradient), stubs::GRADIENT, gradient));
         }
@@ -129,7 +132,7 @@ impl<'p> PictureLinker<'p> {
         if lanes <= MAX_STORED_LANES {
             return all;
         }
-        let once = [stubs::ANALYTIC_HIT, stubs::CLIP_INTERVAL, stubs::GRADIENT];
+        let once = [stubs::ANALYTIC_HIT, stubs::CLIP_INTERVAL, stubs::ESTIMATE, stubs::GRADIENT];
         let steps = self.bindings.iter().filter(|binding| !once.contains(&binding.stub));
         let slots = used_slots(self.program, steps.map(|binding| binding.root).collect());
         slots.into_iter().map(|slot| self.program.uniforms[slot]).collect()

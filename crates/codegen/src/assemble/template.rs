@@ -57,6 +57,7 @@ pub(super) fn features(program: &Program, method: Option<&MethodDefinition>) -> 
         fog: settings.fog.is_some(),
         fog_color: settings.fog.is_some_and(|fog| fog.color.is_some()),
         exposure: settings.exposure.is_some_and(|exposure| exposure.factor.is_some()),
+        estimated: program.estimate.is_some(),
         neutral_tone: settings.exposure.is_some_and(|it| it.tone == Tone::Neutral),
         film_tone: settings.exposure.is_some_and(|it| it.tone == Tone::Film),
         parallel: settings.is_parallel(),

@@ -56,5 +56,8 @@ override PROVED: bool;
 override RECORDS_GAPS: bool;
 // The field is divided by a large Lipschitz constant: a small value may be far from the surface.
 override LOOSE: bool;
+// The field is divided by Lipschitz constants; soft shadows and ambient occlusion use what it is
+// without.
+override ESTIMATED: bool;
 // The scene's functions contain loops.
 override HAS_LOOPS: bool;

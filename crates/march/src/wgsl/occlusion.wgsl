@@ -2,6 +2,8 @@
 // Fast approximations for global illumination on dynamic scenes (SIGGRAPH 2006).
 
 const OCCLUSION_SAMPLES: u32 = 5;
+// The slope from which on a field is taken for a distance.
+const STEEP: f32 = 0.99;
 
 // Length of the gradient at the last normal: distances are divided by it, for fields that are
 // steeper or flatter than a distance.
@@ -23,7 +25,18 @@ fn unoccluded_fraction(point: vec3f, normal: vec3f) -> f32 {
     // The nearer the sample, the more it counts.
     for (var i = 1u; i <= OCCLUSION_SAMPLES; i++) {
         let height = view.occlusion_radius * f32(i) / f32(OCCLUSION_SAMPLES);
-        let distance = field(point + height * normal) / slope;
+        let above = point + height * normal;
+        var distance: f32;
+        if ESTIMATED {
+            // Beside a surface whose field is a distance, the field of others may be flatter.
+            if slope > STEEP {
+                distance = field_estimate(above);
+            } else {
+                distance = field(above) / slope;
+            }
+        } else {
+            distance = field(above) / slope;
+        }
         occluded += weight * saturate(1.0 - distance / height);
         total += weight;
         weight *= 0.5;

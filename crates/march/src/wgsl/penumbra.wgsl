@@ -3,11 +3,16 @@
 // intersect is taken for the surface that both are as far away from. S. Aaltonen, GPU-based clay
 // simulation and ray-tracing tech in Claybook (GDC 2018), there for steps as long as the distance;
 // here for steps of any length, and only for positions within the step.
+//
+// A field that is divided by a Lipschitz constant is flatter than a distance, and shadows would be
+// darker and wider. The position of the least ratio remains, so the ratio is taken from an estimate
+// of the distance there.
 
 // True if the current ray leads to a light with a soft shadow.
 var<private> records_clearance: bool;
-// The least ratio of the distance from the ray to the distance along it.
+// The least ratio of the distance from the ray to the distance along it, and where it is.
 var<private> clearance: f32;
+var<private> closest: f32;
 // The last sample, as (t, distance).
 var<private> last_sample: vec2f;
 
@@ -43,8 +48,27 @@ fn record_sample(t: f32, distance: f32) {
             nearest = last_sample;
         }
         if nearest.x > 0.0 {
+            if ESTIMATED {
+                if nearest.y / nearest.x < clearance {
+                    closest = nearest.x;
+                }
+            }
             clearance = min(clearance, nearest.y / nearest.x);
         }
     }
     last_sample = vec2f(t, distance);
+}
+
+// Supplied by the scene: the body is replaced when the shader is linked.
+
+// What the distance to the surface is likely to be.
+fn field_estimate(p: vec3f) -> f32 {
+    return 0.0;
+}
+
+// Call after tracing a ray towards a light.
+fn estimate_clearance(ray: Ray) {
+    if records_clearance && clearance < 1e30 {
+        clearance = max(clearance, field_estimate(ray_point(ray, closest)) / closest);
+    }
 }

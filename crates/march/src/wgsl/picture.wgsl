@@ -109,6 +109,11 @@ fn picture(pixel: vec2u) -> Pixel {
         }
         if SHADOWS {
             if lights_done > 0u {
+                if SOFT_SHADOWS {
+                    if ESTIMATED {
+                        estimate_clearance(ray);
+                    }
+                }
                 color += pending_light * light_visibility(view.lights[lights_done - 1u], found);
                 evaluations += found.evaluations;
             } else {

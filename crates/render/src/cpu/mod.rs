@@ -68,6 +68,8 @@ pub struct CpuScene {
     gradient: Option<Tape>,
     /// The material of a surface that is seen, see `Program::seen_material`.
     material: Option<Tape>,
+    /// What the distance is likely to be, see `Program::estimate`.
+    estimate: Option<Tape>,
     environment: Option<EnvironmentTapes>,
     /// True if a small value of the field may be far from the surface.
     is_loose: bool,
@@ -99,6 +101,7 @@ impl CpuScene {
             range: range.transpose().map_err(refused)?,
             gradient: program.gradient.map(|gradient| tape(&[gradient])).transpose()?,
             material: material.transpose().map_err(refused)?,
+            estimate: program.estimate.map(|estimate| tape(&[estimate])).transpose()?,
             environment: EnvironmentTapes::new(program).map_err(refused)?,
             is_loose: program.is_loose,
             planar_pixel: planar_pixel.transpose().map_err(refused)?.map(Arc::new),
@@ -253,6 +256,7 @@ impl CpuScene {
             range: self.range.as_ref().map(|tape| tape.prepare(frame)),
             gradient: None,
             material: None,
+            estimate: None,
             environment: None,
         }
     }
@@ -266,6 +270,7 @@ impl CpuScene {
                 .as_ref()
                 .map(|tape| Gradient { whole: prepare(tape), operations: tape.operations() }),
             material: self.material.as_ref().map(prepare),
+            estimate: self.estimate.as_ref().map(prepare),
             environment: self.environment.as_ref().map(|tapes| tapes.prepare(frame)),
             ..wave
         }

@@ -32,6 +32,8 @@ pub(super) struct Trace<'c, T> {
     /// The least ratio of the distance from the ray to the distance along it; infinite if it is not
     /// recorded.
     pub(super) clearance: T,
+    /// The position of that ratio.
+    pub(super) closest: T,
     /// True if the ray passed a stretch without a proof that it is free (`interval`).
     pub(super) unproven: bool,
     /// The cell of a hit, if it is known.
@@ -42,7 +44,8 @@ impl<T: Real> Trace<'_, T> {
     /// The result of a ray that was not traced.
     pub(super) fn untraced() -> Self {
         let (t, clearance) = (T::constant(f64::NAN), T::constant(f64::INFINITY));
-        Self { t, status: MISS, evaluations: 0, clearance, unproven: false, cell: None }
+        let closest = T::constant(0.0);
+        Self { t, status: MISS, evaluations: 0, clearance, closest, unproven: false, cell: None }
     }
 }
 
@@ -58,6 +61,7 @@ struct Walk<T> {
     t: T,
     evaluations: u32,
     clearance: T,
+    closest: T,
     /// The last position, and the distance there.
     before: (T, T),
     /// The last position outside and the first one inside, with the distances there (`auto`,
@@ -100,6 +104,7 @@ impl<T: Real> Walk<T> {
             t: zero,
             evaluations: 0,
             clearance: T::constant(f64::INFINITY),
+            closest: zero,
             before: (zero, zero),
             outside: None,
             inside: None,
@@ -121,8 +126,8 @@ impl<T: Real> Walk<T> {
 
     fn result(&self, t: T, status: u16) -> Trace<'static, T> {
         let evaluations = self.evaluations + self.known.evaluations;
-        let Self { clearance, unproven, .. } = *self;
-        Trace { t, status, evaluations, clearance, unproven, cell: None }
+        let Self { clearance, closest, unproven, .. } = *self;
+        Trace { t, status, evaluations, clearance, closest, unproven, cell: None }
     }
 
     /// The result of a ray that has hit nothing on its march; a position that is NaN stays NaN.
@@ -210,7 +215,10 @@ impl<T: Real> Walk<T> {
                 back => (self.t - back, (here * here - back * back).max(zero).sqrt()),
             };
             if along > zero {
-                self.clearance = self.clearance.min(aside.div(along));
+                let ratio = aside.div(along);
+                if ratio < self.clearance {
+                    (self.clearance, self.closest) = (ratio, along);
+                }
             }
         }
     }

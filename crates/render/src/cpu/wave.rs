@@ -1,6 +1,7 @@
 //! Drawing a group of pixels in waves: all camera rays, then all shadow rays, then all reflections.
 
 use glam::DVec3;
+use sdfc_graph::eval::Packet;
 use sdfc_march::{PixelBlock, UNPROVEN};
 
 use super::cells::Cells;
@@ -8,7 +9,7 @@ use super::environment::EnvironmentBatch;
 use super::gradients::Gradient;
 use super::pixels::Pixels;
 use super::pre_intersection::PreIntersectionBatch;
-use super::ray::{Batch, Ray, Real, surface_values};
+use super::ray::{Batch, LANES, Ray, Real, packed_from, surface_values};
 use super::shade::{Paint, Surface};
 use super::surroundings::{IncomingLight, background_color, clear_fraction, light_visibility};
 use super::trace::copies::trace_among_copies;
@@ -19,6 +20,8 @@ use crate::view::{Background, View, ViewFog, ViewLight, ViewOcclusion, ViewShado
 
 /// The number of samples above a surface for ambient occlusion.
 const OCCLUSION_SAMPLES: u32 = 5;
+/// The slope from which on a field is taken for a distance.
+const STEEP: f64 = 0.99;
 /// Tolerance of a shadow ray in widths of its footprint, which is as wide as the ray starts above
 /// the surface.
 const SHADOW_TOLERANCE: f64 = 0.25;
@@ -36,6 +39,8 @@ pub(super) struct Wave<'a, T> {
     /// `None` if only depths are drawn.
     pub(super) gradient: Option<Gradient<'a, T>>,
     pub(super) material: Option<Batch<'a, T>>,
+    /// What the distance is likely to be, for soft shadows and ambient occlusion.
+    pub(super) estimate: Option<Batch<'a, T>>,
     /// The light of a picture of the surroundings.
     pub(super) environment: Option<EnvironmentBatch<'a, T>>,
 }
@@ -244,15 +249,34 @@ impl<'a, T: Real> Wave<'a, T> {
             let above = |hit: &SurfaceHit<T>| hit.point() + hit.surface.normal * height;
             let points: Vec<[T; 3]> =
                 hits.iter().map(|hit| above(hit).to_array().map(T::constant)).collect();
-            let values = self.field.values(&points);
-            for ((open, hit), value) in open.iter_mut().zip(hits).zip(values) {
-                let distance = value / hit.slope;
+            let distances = self.distances_above(&points, hits);
+            for ((open, hit), distance) in open.iter_mut().zip(hits).zip(distances) {
                 let occluded = (1.0 - distance / height).clamp(0.0, 1.0);
                 *open -= strength * occluded * weight(sample) / total;
                 shades[hit.view_ray.pixel].evaluations += 1;
             }
         }
         open
+    }
+
+    /// Distances to surfaces from points above hits. Beside a surface whose field is a distance,
+    /// the field of others may be flatter.
+    fn distances_above(&mut self, points: &[[T; 3]], hits: &[SurfaceHit<T>]) -> Vec<f64> {
+        let values = self.field.values(points);
+        let mut distances: Vec<f64> =
+            values.into_iter().zip(hits).map(|(value, hit)| value / hit.slope).collect();
+        if let Some(estimate) = &mut self.estimate {
+            let steep = (0..hits.len()).filter(|&index| hits[index].slope > STEEP);
+            let steep: Vec<usize> = steep.collect();
+            for group in steep.chunks(LANES) {
+                let above = packed_from(group.iter().map(|&index| points[index]));
+                let Packet(estimates) = estimate.scalar(above);
+                for (&index, estimate) in group.iter().zip(estimates) {
+                    distances[index] = estimate.into();
+                }
+            }
+        }
+        distances
     }
 
     fn camera_ray(&self, [x, y]: [u32; 2]) -> Ray<T> {
@@ -312,12 +336,31 @@ impl<'a, T: Real> Wave<'a, T> {
         let rays: Vec<Ray<T>> =
             shadowed.iter().map(|(hit, incoming, _)| self.shadow_ray(hit, incoming)).collect();
         let records_clearance = matches!(light.shadow, ViewShadow::Soft(_));
-        let traces = self.traces(&rays, records_clearance);
+        let mut traces = self.traces(&rays, records_clearance);
+        if records_clearance {
+            self.estimate_clearances(&rays, &mut traces);
+        }
         for ((hit, _, lit), trace) in shadowed.into_iter().zip(traces) {
             let shade = &mut shades[hit.view_ray.pixel];
             shade.count(&trace);
             if trace.status != HIT {
                 shade.color += lit * light_visibility(light, trace.clearance.into());
+            }
+        }
+    }
+
+    /// Takes the clearance of rays from an estimate of the distance where it is least: a field that
+    /// is divided by a Lipschitz constant would make it too small.
+    fn estimate_clearances(&mut self, rays: &[Ray<T>], traces: &mut [Trace<'_, T>]) {
+        let Some(estimate) = &mut self.estimate else { return };
+        let known = |index: &usize| T::constant(0.0) < traces[*index].closest;
+        let indices: Vec<usize> = (0..traces.len()).filter(known).collect();
+        for group in indices.chunks(LANES) {
+            let points = group.iter().map(|&index| rays[index].at(traces[index].closest));
+            let Packet(distances) = estimate.scalar(packed_from(points));
+            for (&index, distance) in group.iter().zip(distances) {
+                let Trace { clearance, closest, .. } = &mut traces[index];
+                *clearance = clearance.max(distance.div(*closest));
             }
         }
     }
