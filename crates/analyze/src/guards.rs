@@ -4,7 +4,9 @@
 //! distance outside is at least the signed distance to the box. Within the solid it is, too: no
 //! point of the solid is deeper in it than in the box, and the field never exceeds the depth.
 
-use sdfc_graph::{Bounds, Dim, ExpandError, FAR, Expander, Graph, Guard, Node, NodeId, ShapeId, reachable};
+use sdfc_graph::{
+    Bounds, Dim, ExpandError, Expander, FAR, Graph, Guard, Node, NodeId, ShapeId, reachable,
+};
 
 use crate::analytic::boxes::MARGIN;
 use crate::analytic::operands::{MarchedOperand, whole_shape};

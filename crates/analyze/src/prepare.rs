@@ -1,8 +1,8 @@
 //! The passes from a scene to a flat program.
 
 use sdfc_graph::{
-    Bounds, Dim, ExpandError, Expander, Graph, Light, NodeId, Program, Rays, Scene, Settings, Shadow,
-    ShapeId, SurfaceVector, Unary, best_gradient, reachable, substitute, uniforms,
+    Bounds, Dim, ExpandError, Expander, Graph, Light, NodeId, Program, Rays, Scene, Settings,
+    Shadow, ShapeId, SurfaceVector, Unary, best_gradient, reachable, substitute, uniforms,
 };
 
 use crate::analytic::operands::Operands;

@@ -213,8 +213,7 @@ impl Program {
     pub fn roots(&self) -> Vec<NodeId> {
         // Destructured so that a new function does not compile until it is handled here.
         let Rays { first_hit, analytic, marched, clip, copies } = self.rays;
-        let fields =
-            [self.distance, self.estimate, self.gradient, self.range, self.slope_range];
+        let fields = [self.distance, self.estimate, self.gradient, self.range, self.slope_range];
         let rays = [first_hit, analytic, marched, clip, copies];
         let material = self.material.into_iter().chain(self.seen_material).flatten();
         let culling_bounds = self.cullable_loops.iter().map(|cullable| cullable.culling_bounds);

@@ -98,7 +98,8 @@ impl Merging<'_> {
         }
         let JoinedList { list, firsts, lasts } = self.joined.get(&lists)?.clone();
         // Each list has its own end, to which indices are clamped.
-        let numbers = |numbers: Vec<usize>| numbers.into_iter().map(|it| [it as f64, 0.0, 0.0, 0.0]);
+        let numbers =
+            |numbers: Vec<usize>| numbers.into_iter().map(|it| [it as f64, 0.0, 0.0, 0.0]);
         let first = self.constants(Type::Scalar, numbers(firsts))?;
         let last = self.constants(Type::Scalar, numbers(lasts))?;
         let zero = self.constants(Type::Scalar, column.iter().map(|_| [0.0; 4]))?;
@@ -128,7 +129,9 @@ impl Merging<'_> {
         let limit = if all.iter().all(|&it| it == max_iterations) {
             None
         } else {
-            Some(self.constants(Type::Scalar, all.iter().map(|&it| [f64::from(it), 0.0, 0.0, 0.0]))?)
+            Some(
+                self.constants(Type::Scalar, all.iter().map(|&it| [f64::from(it), 0.0, 0.0, 0.0]))?,
+            )
         };
         Some(Expression::Loop(NestedLoop { form, part, max_iterations, limit, arguments }))
     }

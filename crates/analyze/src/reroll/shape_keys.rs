@@ -4,9 +4,7 @@
 //! the contents of a list, and the largest number of iterations of a loop.
 
 use rustc_hash::FxHashMap;
-use sdfc_graph::{
-    Binary, Graph, IdMap, Node, NodeId, Stage, Ternary, Type, Unary, reachable,
-};
+use sdfc_graph::{Binary, Graph, IdMap, Node, NodeId, Stage, Ternary, Type, Unary, reachable};
 
 use crate::reroll::linear::{Linear, Linears};
 

@@ -53,7 +53,8 @@ pub(super) fn template(
 ) -> Option<Vec<NodeId>> {
     let (expressions, known, columns, joined) = Default::default();
     let frame_operations = 0;
-    let mut merging = Merging { graph, keys, expressions, known, columns, joined, frame_operations };
+    let mut merging =
+        Merging { graph, keys, expressions, known, columns, joined, frame_operations };
     for (list, formula) in given {
         merging.add(list.to_vec(), Expression::Same(*formula));
     }
@@ -173,7 +174,11 @@ impl Merging<'_> {
     }
 
     /// The subexpression of a column of constants.
-    pub(super) fn constants(&mut self, ty: Type, lanes: impl Iterator<Item = [f64; 4]>) -> Option<usize> {
+    pub(super) fn constants(
+        &mut self,
+        ty: Type,
+        lanes: impl Iterator<Item = [f64; 4]>,
+    ) -> Option<usize> {
         let column = lanes.map(|lanes| self.graph.constant(ty, &lanes[..ty.width()])).collect();
         self.expression(column)
     }

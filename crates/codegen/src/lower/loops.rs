@@ -141,11 +141,7 @@ impl Lowering<'_> {
 
     /// Leaves the loop after the last iteration; otherwise reads what an iteration needs. Returns
     /// the value of the counter.
-    fn start_iteration(
-        &mut self,
-        counting: &Counting,
-        state: &[(Value, &'static str)],
-    ) -> Value {
+    fn start_iteration(&mut self, counting: &Counting, state: &[(Value, &'static str)]) -> Value {
         let name = if counting.listed.is_some() { "at" } else { "i" };
         let counted = self.body.load(counting.counter, name);
         let past = self.body.binary(BinaryOperator::GreaterEqual, counted, counting.limit);

@@ -5,7 +5,7 @@ use sdfc_syntax::ast::{self, Name};
 
 use super::advice::{signature, too_many};
 use super::call::{Callee, Given, Value, is_lambda};
-use super::coerce::{Role, mismatch};
+use super::coerce::Role;
 use super::decl::ParameterSignature;
 use super::types;
 use super::written::written;
@@ -36,7 +36,10 @@ impl<'a> Checker<'a> {
             .enumerate()
             .zip(bound)
             .map(|((at, parameter), mut given)| {
-                let role = Role::Argument(callee.name, parameter.name);
+                let role = match parameter.untyped {
+                    true => Role::Untyped(callee.name, parameter.name),
+                    false => Role::Argument(callee.name, parameter.name),
+                };
                 if parameter.variadic && given.first().is_none_or(|given| given.name.is_none()) {
                     return Some(self.variadic(&parameters[at..], given, role, callee.span));
                 }
@@ -165,7 +168,7 @@ impl<'a> Checker<'a> {
             Ok(value) => return value,
             Err(value) => value,
         };
-        let found = mismatch(&value, want, role);
+        let found = self.mismatch(&value, want, role);
         let fits = |parameter: &&&ParameterSignature| {
             types::same_value(&value.ty, &parameter.ty)
                 || (value.ty == Type::Int && parameter.ty == Type::Number)

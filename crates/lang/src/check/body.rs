@@ -22,6 +22,8 @@ pub(super) struct Variable<'a> {
     pub implicit: bool,
     /// True if something uses it.
     pub used: bool,
+    /// True for a parameter without a type, which is a number.
+    pub untyped: bool,
 }
 
 /// The variables of a function, shape or lambda. Later ones hide earlier ones of the same name.
@@ -105,7 +107,16 @@ impl<'a> Body<'a> {
     /// Brings a variable into scope under a reserved id.
     pub(super) fn declare_as(&mut self, id: LocalId, name: &'a str, ty: Type, span: Span) {
         if let Some(frame) = self.frames.last_mut() {
-            frame.variables.push(Variable { name, id, ty, span, implicit: false, used: false });
+            let (implicit, used, untyped) = (false, false, false);
+            frame.variables.push(Variable { name, id, ty, span, implicit, used, untyped });
+        }
+    }
+
+    /// Brings a parameter without a type into scope under a reserved id.
+    pub(super) fn declare_untyped(&mut self, id: LocalId, name: &'a str, span: Span) {
+        self.declare_as(id, name, Type::Number, span);
+        if let Some(variable) = self.frames.last_mut().and_then(|it| it.variables.last_mut()) {
+            variable.untyped = true;
         }
     }
 

@@ -23,7 +23,7 @@ pub(crate) const FIELDS: [(&str, MaterialField, Type); 5] = [
 
 /// A parameter of a kernel function.
 pub(super) fn parameter(name: &str, ty: Type, optional: bool) -> ParameterSignature<'_> {
-    ParameterSignature { name, ty, variadic: false, optional, default: None }
+    ParameterSignature { name, ty, variadic: false, optional, untyped: false, default: None }
 }
 
 /// An operation of the kernel.

@@ -13,6 +13,8 @@ use crate::synonyms;
 pub(super) enum Role<'r> {
     /// A parameter of a declaration, setting or kernel function.
     Argument(&'r str, &'r str),
+    /// A parameter without a type.
+    Untyped(&'r str, &'r str),
     /// An argument of a function value, counted from 1.
     Positional(usize),
     /// The result of a function.
@@ -29,7 +31,9 @@ impl Role<'_> {
     /// The role as a subject: ``rotate's `y` ``.
     pub(super) fn subject(self) -> String {
         match self {
-            Self::Argument(callee, parameter) => format!("{callee}'s `{parameter}`"),
+            Self::Argument(callee, parameter) | Self::Untyped(callee, parameter) => {
+                format!("{callee}'s `{parameter}`")
+            }
             Self::Positional(at) => format!("argument {at} of this function"),
             Self::Result(name) => format!("the result of `{name}`"),
             Self::Formula(name) => format!("the formula of `{name}`"),
@@ -46,10 +50,25 @@ impl Checker<'_> {
         match self.try_coerce(value, want) {
             Ok(value) => value,
             Err(value) => {
-                self.report(mismatch(&value, want, role));
+                let found = self.mismatch(&value, want, role);
+                self.report(found);
                 poison(value.span)
             }
         }
+    }
+
+    /// The diagnostic for a value of the wrong type.
+    pub(super) fn mismatch(&self, value: &Expr, want: &Type, role: Role) -> Diagnostic {
+        let found = mismatch(value, want, role);
+        let ExprKind::Local(id) = value.kind else { return found };
+        let Some(parameter) = self.body.variables().find(|it| it.id == id && it.untyped) else {
+            return found;
+        };
+        let (name, ty) = (parameter.name, types::show(value_type(want)));
+        let help = format!("`{name}` has no type, so it is a number: write {name}: {ty}");
+        let fix = format!("write the type of `{name}`");
+        let found = Diagnostic { help: Vec::new(), fixes: Vec::new(), ..found };
+        found.help(help).fix(fix, parameter.span.after(), format!(": {ty}"))
     }
 
     /// Coerces a value to type `want`, or returns the value itself as an error.
@@ -194,16 +213,7 @@ pub(super) fn has_no_need_of_a_unit(value: &Expr) -> bool {
 /// The diagnostic for a value of the wrong type.
 pub(super) fn mismatch(value: &Expr, want: &Type, role: Role) -> Diagnostic {
     let subject = role.subject();
-    // A value can be used as a constant function: then its type must be the function's result.
-    let want = match (&value.ty, want) {
-        (Type::Fn(..), _) => want,
-        (_, Type::Fn(_, result))
-            if !matches!(**result, Type::Fn(..)) && *want != types::blend() =>
-        {
-            &**result
-        }
-        _ => want,
-    };
+    let want = if matches!(value.ty, Type::Fn(..)) { want } else { value_type(want) };
     match (&value.ty, want) {
         (Type::Number | Type::Int, Type::Angle) => not_an_angle(value, &subject),
         (Type::Shape(Dim::Two), Type::Shape(Dim::Three)) => {
@@ -218,6 +228,17 @@ pub(super) fn mismatch(value: &Expr, want: &Type, role: Role) -> Diagnostic {
             let found = Diagnostic::error(Code::TYPE_MISMATCH, value.span, message);
             ways_out(value, want, role).into_iter().fold(found, Diagnostic::help)
         }
+    }
+}
+
+/// The type of a value that can be used where a type is expected: a value can be a constant
+/// function, so for a function it is the type of its result.
+fn value_type(want: &Type) -> &Type {
+    match want {
+        Type::Fn(_, result) if !matches!(**result, Type::Fn(..)) && *want != types::blend() => {
+            result
+        }
+        _ => want,
     }
 }
 
@@ -277,12 +298,11 @@ fn ways_out(value: &Expr, want: &Type, role: Role) -> Vec<String> {
         {
             vec![format!("to call the field `{callee}`, write (a.{callee})(...)")]
         }
-        (_, Type::Number, Type::Shape(_) | Type::Vec(_), None)
-            if matches!(value.kind, ExprKind::Local(_)) =>
-        {
-            let ty = types::show(want);
+        (Role::Untyped(callee, parameter), ..) => {
+            let ty = types::show(have);
             vec![format!(
-                "a parameter without a type is a number: write its type, as in fn f(a: {ty}) = ..."
+                "`{parameter}` has no type, so it is a number: write its type where `{callee}` is \
+                 declared, {parameter}: {ty}"
             )]
         }
         (Role::Argument(callee, _), _, Type::Shape(_), None) => {

@@ -21,6 +21,8 @@ pub(super) struct ParameterSignature<'a> {
     pub ty: Type,
     pub variadic: bool,
     pub optional: bool,
+    /// True if neither a type nor a default is written, so that it is a number.
+    pub untyped: bool,
     /// The default's source; kernel functions and settings have none.
     pub default: Option<&'a ast::Expr>,
 }
@@ -249,12 +251,17 @@ impl<'a> Checker<'a> {
             }
             let parameter = self.check_parameter(parm);
             self.note_variable(parm.name.span, &parameter.ty);
-            self.body.declare_as(LocalId(at as u32), name, parameter.ty.clone(), parm.name.span);
+            let (id, untyped) = (LocalId(at as u32), parm.ty.is_none() && parm.default.is_none());
+            match untyped {
+                true => self.body.declare_untyped(id, name, parm.name.span),
+                false => self.body.declare_as(id, name, parameter.ty.clone(), parm.name.span),
+            }
             signatures.push(ParameterSignature {
                 name,
                 ty: parameter.ty.clone(),
                 variadic: parm.variadic,
                 optional: parameter.default.is_some(),
+                untyped,
                 default: parm.default.as_ref(),
             });
             parameters.push(parameter);

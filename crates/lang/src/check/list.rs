@@ -52,7 +52,7 @@ impl<'a> Checker<'a> {
         role: Role,
     ) -> Expr {
         let role = match role {
-            Role::Argument(..) | Role::Positional(_) => role,
+            Role::Argument(..) | Role::Untyped(..) | Role::Positional(_) => role,
             Role::Result(_) | Role::Formula(_) | Role::LambdaResult | Role::The(_) => {
                 Role::The("this element")
             }

@@ -331,6 +331,7 @@ impl<'a> Checker<'a> {
                 ty: parameter.ty.clone(),
                 variadic: false,
                 optional: parameter.optional,
+                untyped: false,
                 default: None,
             })
             .collect();

@@ -227,7 +227,9 @@ impl Slopes {
         match piecewise::constant(graph, node, self.maps.level(), &known) {
             // A number can be compared with others. The rule might be less for some values of the
             // params, but not for all.
-            Some(norm) if graph.as_number(norm).is_some() && graph.as_number(rule).is_none() => norm,
+            Some(norm) if graph.as_number(norm).is_some() && graph.as_number(rule).is_none() => {
+                norm
+            }
             Some(constant) => graph.min(rule, constant),
             None => rule,
         }
