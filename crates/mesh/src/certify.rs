@@ -18,10 +18,11 @@ const CHUNK: usize = 1024;
 const MANY: usize = 48;
 /// A box is not divided below this fraction of the error.
 const FINEST: f64 = 0.125;
-/// The same after many boxes stayed undecided.
-const COARSE: f64 = 0.25;
-/// This many undecided boxes are many.
+/// The fraction doubles whenever this many boxes more have stayed undecided. So the number of boxes
+/// grows with the logarithm of the area where nothing can be decided, as where parts share a face.
 const FLOOD: usize = 20_000;
+/// It doubles at most this often.
+const MAX_DOUBLINGS: usize = 8;
 /// A box is decided by single points if its center is this near to its corners, in errors.
 const SMALL: f64 = 0.7;
 /// The field is 0 in a box of a flat grid if all values are at most this fraction of the error.
@@ -131,7 +132,8 @@ impl<'f> Prover<'_, 'f> {
         while !waiting.is_empty() {
             let chunk = waiting.split_off(waiting.len().saturating_sub(CHUNK));
             done += chunk.len();
-            let finest = if undecided.len() < FLOOD { FINEST } else { COARSE };
+            let doublings = (undecided.len() / FLOOD).min(MAX_DOUBLINGS);
+            let finest = FINEST * 2f64.powi(doublings as i32);
             let outcomes: Vec<Vec<Outcome<'f>>> =
                 chunk.into_par_iter().map(|task| self.divide(task, finest)).collect();
             for outcome in outcomes.into_iter().flatten() {

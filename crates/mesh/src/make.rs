@@ -15,6 +15,8 @@ use crate::vector::Vec3;
 
 /// How often cells about undecided boxes are divided.
 const ROUNDS: u32 = 4;
+/// With more undecided boxes, no cells are divided.
+const MANY: usize = 60_000;
 
 /// A surface that is made from the cells of a grid.
 pub(crate) trait Surface: Sized {
@@ -69,6 +71,10 @@ impl Maker<'_> {
         refiner.grow(&mut cells.tree, vec![grid.root()], progress)?;
         let mut best = self.attempt::<S>(&refiner, &mut cells, None, progress)?;
         for _ in 0..ROUNDS {
+            // Smaller cells serve where the surface is not found, not where nothing can be decided.
+            if best.1.undecided.len() > MANY {
+                break;
+            }
             let divided = divide(&mut cells.tree, grid, &best.1.undecided);
             if divided.is_empty() {
                 break;
