@@ -51,8 +51,9 @@ pub enum Error {
     #[cfg(feature = "mesh")]
     #[error(
         "no `let` at the top level of the scene gives the name `{name}` to a solid; {}",
-        if known.is_empty() { "there are no such names".to_owned() }
-        else { format!("the names are: {}", known.join(", ")) }
+        if known.is_empty() {
+            "there are no such names; a region becomes a solid by .extrude(0.2)".to_owned()
+        } else { format!("the names are: {}", known.join(", ")) }
     )]
     UnknownSolid {
         /// The name that was asked for.

@@ -2,7 +2,7 @@
 
 use sdfc_graph::eval::{Evaluator, FrameValues, Tape, evaluate_frame};
 use sdfc_graph::{
-    Bounds, Dim, Expander, Graph, LipschitzClaim, Node, NodeId, Scene, ShapeId, reachable,
+    Bounds, Dim, Expander, Graph, LipschitzClaim, Node, NodeId, Scene, ShapeId, Stage, reachable,
 };
 
 use crate::refute::frames::{ParamValues, axes, frames};
@@ -75,14 +75,25 @@ pub fn refute_lipschitz(
     })
 }
 
-/// The shapes whose formulas contain the node. If simplification has removed it from all of them,
-/// the root of the scene.
+/// The shapes whose formulas contain the node, or what it is computed from: simplification may have
+/// merged its last operation with others. If there are none, the root of the scene.
 fn callers(graph: &Graph, root: Option<ShapeId>, value: NodeId) -> Vec<ShapeId> {
-    let calls = |&shape: &ShapeId| {
-        let shape = graph.shape(shape);
-        shape.level == 0 && reachable(graph, &[shape.formula]).contains(&value)
+    let having = |nodes: &[NodeId]| -> Vec<ShapeId> {
+        let calls = |&shape: &ShapeId| {
+            let shape = graph.shape(shape);
+            let formula = reachable(graph, &[shape.formula]);
+            shape.level == 0 && nodes.iter().any(|node| formula.binary_search(node).is_ok())
+        };
+        graph.shape_ids().filter(calls).take(SHAPES).collect()
     };
-    let mut callers: Vec<ShapeId> = graph.shape_ids().filter(calls).take(SHAPES).collect();
+    let mut callers = having(&[value]);
+    if callers.is_empty() {
+        let is_specific = |&id: &NodeId| {
+            let is_place = matches!(graph.node(id), Node::Point(..) | Node::Swizzle(..));
+            graph.stage(id) == Stage::Point && !is_place
+        };
+        callers = having(&graph.arguments(value).filter(is_specific).collect::<Vec<_>>());
+    }
     if callers.is_empty() {
         let is_flat = |node| graph.node(node) == Node::Point(0, Dim::Two);
         callers.extend(root.filter(|_| !reachable(graph, &[value]).into_iter().any(is_flat)));

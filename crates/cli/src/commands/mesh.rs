@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use sdfc::{Mesh, MeshFormat, Shell};
+use sdfc::{Mesh, MeshFormat, Scene, Shell};
 
 use crate::args;
 use crate::console::Console;
@@ -29,7 +29,27 @@ pub fn run(args: &args::Mesh, console: &Console) -> Result<(), Failure> {
     super::note_left_out(&reported.left_out, console);
     output.write(&bytes, &reported)?;
     print(&output.path, &mesh, console);
+    if lies_inside(&scene, &mesh, args.values.time) {
+        console.note(
+            "it lies inside of the solid: where two parts only share a face, the distance is 0 \
+             there; let them overlap a little",
+        );
+    }
     Ok(())
+}
+
+/// True if the first undecided box has the solid on all sides.
+fn lies_inside(scene: &Scene, mesh: &Mesh, time: f64) -> bool {
+    let Some([lo, hi]) = mesh.certificate.undecided_boxes.first() else { return false };
+    let middle: [f64; 3] = std::array::from_fn(|axis| 0.5 * (lo[axis] + hi[axis]));
+    let frame = super::values(scene, time);
+    let Ok(mut field) = scene.field(&frame) else { return false };
+    (0..6).all(|side| {
+        let mut point = middle;
+        let reach = 2.0 * (hi[side / 2] - lo[side / 2]);
+        point[side / 2] += if side % 2 == 0 { -reach } else { reach };
+        field.distance(point) <= 0.0
+    })
 }
 
 fn print(path: &Path, mesh: &Mesh, console: &Console) {
