@@ -85,6 +85,28 @@ fn brightness(text: &str, size: [u32; 2]) -> [f64; 3] {
     [hit.iter().sum::<f64>() / hit.len() as f64, all / count, hit.len() as f64 / count]
 }
 
+/// A field that is divided by a Lipschitz constant is flatter than the distance. Soft shadows and
+/// ambient occlusion of it are those of the distance.
+#[test]
+fn a_flat_field_is_shaded_as_a_distance() {
+    let image = |ball: &str| {
+        let text = format!("{ball}\nplane(y: -1.2)\ncamera(eye: [3, 2, 4])");
+        let options = PictureOptions::new().size([60, 40]).backend(Backend::Cpu).samples(1);
+        compiled(&text).render(&options, &mut no_progress).unwrap().image
+    };
+    let distance = image("sphere(1)");
+    let flat = image("sphere(1).displace(fn(q) lipschitz 7 = 1e-4 * sin(q.x))");
+    let colors = |image: &sdfc_render::Image| -> Vec<[f32; 4]> {
+        image.pixels().iter().map(|pixel| pixel.color).collect()
+    };
+    let apart = |(a, b): (&[f32; 4], &[f32; 4])| {
+        (0..3).map(|lane| f64::from(a[lane] - b[lane]).abs()).fold(0.0, f64::max)
+    };
+    let apart: Vec<f64> = colors(&distance).iter().zip(&colors(&flat)).map(apart).collect();
+    let mean = apart.iter().sum::<f64>() / apart.len() as f64;
+    assert!(mean < 0.004, "the mean colours differ by {mean}");
+}
+
 #[test]
 fn scenes_of_any_size_and_place_look_alike_at_any_aspect() {
     for size in [[48, 27], [36, 36], [27, 48]] {

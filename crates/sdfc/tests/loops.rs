@@ -191,6 +191,21 @@ fn parts_with_a_param_each_do_not_keep_others_out_of_a_loop() {
     assert_eq!(parts_in_loops(&text), [30]);
 }
 
+/// Their outlines have lists and loops of different lengths.
+#[test]
+fn similar_texts_and_polygons_share_a_loop() {
+    let texts = "union(for i in 0..5: text(str(7 * i + 8), size: 0.6).extrude(0.1 + 0.02 * i)
+      .rotate(z: 20deg + 9deg * i).translate([0.7 * i - 1, 0.3 * i, 0.2])\n      .color(hsl(30deg * i, 0.8, 0.5)))\n";
+    let rolled = compare(texts);
+    assert_eq!(rolled.report().loops.iter().map(|it| it.operands).sum::<usize>(), 5);
+    // Rays pass by most of them: boxes around them tell which.
+    assert_eq!(rolled.program().cullable_loops.len(), rolled.report().loops.len());
+    let stars = "union(for n in 5..9: polygon([for i in 0..(6 * n):
+      (0.3 + 0.2 * (i % 2)) * [cos(i * 60deg / n), sin(i * 60deg / n)]])
+      .extrude(0.1).translate([n - 7, 0.1 * n, 0]))\n";
+    assert_eq!(compare(stars).report().loops.iter().map(|it| it.operands).sum::<usize>(), 4);
+}
+
 #[test]
 fn infinite_blends_and_few_similar_parts_stay_unrolled() {
     let rolled = compare(&chained("smooth_exp(0.1)"));

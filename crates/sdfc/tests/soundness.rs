@@ -6,7 +6,7 @@
 #![allow(clippy::expect_used, clippy::panic, reason = "a test stops where it fails")]
 
 use sdfc::{Compiler, Scene};
-use sdfc_analyze::{Lipschitz, Promise};
+use sdfc_analyze::{Lipschitz, Promise, ShapeReport};
 use sdfc_graph::eval::{FrameValues, Tape};
 use sdfc_graph::{Dim, Expander};
 
@@ -346,6 +346,29 @@ fn no_division_moves_a_surface() {
             let (a, b) = (plain.scalar(p), marched.scalar(p));
             assert!(a.abs() < 1e-9 || (a > 0.0) == (b > 0.0), "{name} at {p:?}: {a} and {b}");
         }
+    }
+}
+
+/// A rotation by a param changes no distance, also between folds.
+#[test]
+fn folds_that_a_param_rotates_have_the_constant_of_the_folds() {
+    let folds = |turn: &str| {
+        format!(
+            "param k = 0.4 in 0..1.5\nsolid folds() = {{\n  let r = iterate(7, p, fn(q) = {{\n    \
+             let w = abs(q) - [0.6, 0.4, 0.5]\n    let a = spin(w.xy, {turn})\n    \
+             let b = spin([a.x, w.z], 0.3rad)\n    1.5 * [b.x, a.y, b.y]\n  }})\n  \
+             (length(r) - 1) / pow(1.5, 7)\n}}\nfolds() & sphere(2)"
+        )
+    };
+    for turn in ["k * 1rad", "0.4rad + 0.1rad * time", "k * 1rad + 20deg", "0.4rad"] {
+        let scene = scene(turn, &folds(turn));
+        let report = scene.report();
+        for ShapeReport { lipschitz, .. } in &report.shapes {
+            let Lipschitz::Number(constant) = *lipschitz else { panic!("{turn}: {lipschitz:?}") };
+            assert!((constant - 1.0).abs() < 1e-9, "{turn}: {constant}");
+        }
+        let steepest = steepest(&scene);
+        assert!(steepest <= 1.0 + ROUNDING && steepest > 0.5, "{turn}: slope {steepest}");
     }
 }
 

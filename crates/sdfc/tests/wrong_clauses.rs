@@ -79,6 +79,11 @@ fn a_function_that_understates_its_slope_is_refuted() {
     // The constant is wrong only at one end of a param's range.
     let text = "param k = 1 in 0..3\nfn steep(t) lipschitz 1 = k * t\nsolid a() = -steep(0.5 - length(p))\na()";
     expect(text, "E0502", "1");
+    // A function of points of a plane, and one whose result simplification merges with others.
+    for shape in ["circle(0.3)", "sphere(0.3)"] {
+        let wave = "displace(fn(q) lipschitz 0.1 = 0.1 * sin(40 * q.x))";
+        expect(&format!("{shape}.{wave}"), "E0502", "0.1");
+    }
     // A blend that the scene defines, and a function without a name.
     let text = "fn ridge(k: length) -> blend = fn(a, b) lipschitz 1 = min(a, b) + 2 * max(k - abs(a - b), 0)\n\
                 union(sphere(0.5), box(0.8), blend: ridge(0.1))";

@@ -41,6 +41,17 @@ fn hard_scenes_give_valid_meshes() {
     }
 }
 
+/// The distance is 0 in the whole face that both parts share, so nothing is known of its boxes.
+#[test]
+fn parts_that_share_a_face_are_meshed_without_a_proof() {
+    let source = "capped_cone(h: 5, r1: 5, r2: 4).translate(y: 2.5)\n\
+                  cylinder(h: 5, r: 5).translate(y: 7.5)";
+    let mesh = mesh(&scene(source), 0.002);
+    check(&mesh, source);
+    let undecided = mesh.certificate.undecided;
+    assert!((1..200_000).contains(&undecided), "{undecided} undecided boxes");
+}
+
 /// The plate with holes of the cookbook.
 const PLATE: &str = "let bolts = cylinder(r: 0.12, h: 1).translate(x: 0.7).polar_repeat(8)\n\
     cylinder(r: 1, h: 0.2) - bolts - cylinder(r: 0.35, h: 1)";
