@@ -58,6 +58,7 @@ mod clearance;
 mod compiler;
 mod derived_bounds;
 mod diagnostics;
+mod empty_view;
 mod error;
 mod explain;
 mod explanation;

@@ -16,6 +16,7 @@ use sdfc_render::{
     TileSize, View, Why, milliseconds_since, sample_offsets, uniform_values,
 };
 
+use crate::empty_view::why_empty;
 use crate::error::Error;
 use crate::marched::Marched;
 use crate::scene::Scene;
@@ -436,7 +437,10 @@ impl Painter<'_> {
         let drawn = first_drawn.duration_since(self.start).as_secs_f64() * 1e3;
         stats.set_first_picture(scene.times.front + scene.times.analyze + drawn);
         let again = self.reopened.get().map(|_| AGAIN.to_owned());
-        let notes: Vec<String> = self.note.iter().cloned().chain(again).collect();
+        // A region may show nothing, and another camera is the caller's affair.
+        let is_whole = self.region.is_none() && self.pose.is_none();
+        let empty = is_whole.then(|| why_empty(scene, values, &stats.pixels)).flatten();
+        let notes: Vec<String> = self.note.iter().cloned().chain(again).chain(empty).collect();
         let note = (!notes.is_empty()).then(|| notes.join("; "));
         Ok(Picture { image: frame.image, stats, note, unproven })
     }

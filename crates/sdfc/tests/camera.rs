@@ -69,3 +69,17 @@ fn a_painter_that_is_aimed_draws_as_a_new_one() {
     let without = scene.painter(&PictureOptions::new().backend(Backend::Cpu)).unwrap();
     assert!(!{ without }.aim([16, 9], first));
 }
+
+#[test]
+fn a_camera_that_shows_nothing_is_explained() {
+    let note = |camera: &str| {
+        let scene = compiled(Compiler::new(), &format!("sphere(1)\n{camera}"));
+        let options = PictureOptions::new().backend(Backend::Cpu).size([16, 9]).samples(1);
+        scene.render(&options, &mut no_progress).unwrap().note.unwrap_or_default()
+    };
+    assert!(note("camera(eye: [0, 0.5, 0], target: [0, 0, -5])").contains("inside of a solid"));
+    assert!(note("camera(eye: [0, 0, 4], target: [0, 9, 4])").contains("no ray meets the scene"));
+    for camera in ["camera(eye: [0, 0, 4], target: [0, 0, 0])", ""] {
+        assert_eq!(note(camera), "", "{camera}");
+    }
+}

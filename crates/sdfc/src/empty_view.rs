@@ -1,0 +1,29 @@
+//! Says why a picture shows nothing of a scene.
+
+use sdfc_graph::Camera;
+use sdfc_graph::eval::{FrameValues, evaluate_frame};
+use sdfc_render::PixelCounts;
+
+use crate::scene::Scene;
+
+const REMEDY: &str = "or leave out `camera(...)` to see the whole scene";
+
+/// Returns why a whole picture by the scene's own camera shows nothing, or what is inside of a
+/// solid. `None` if it shows something, or if the camera sees the whole scene anyway.
+pub(crate) fn why_empty(
+    scene: &Scene,
+    values: &FrameValues,
+    pixels: &PixelCounts,
+) -> Option<String> {
+    let program = scene.program();
+    if program.is_planar() {
+        return None;
+    }
+    let Some(Camera { eye, .. }) = program.settings.camera else { return None };
+    let [x, y, z, _] = *evaluate_frame(&program.graph, &[eye], values).first()?;
+    if scene.field(values).ok()?.distance([x, y, z]) < 0.0 {
+        return Some(format!("the camera is inside of a solid: move its `eye`, {REMEDY}"));
+    }
+    let is_empty = pixels.hit == 0 && pixels.capped == 0;
+    is_empty.then(|| format!("no ray meets the scene: turn the camera by its `target`, {REMEDY}"))
+}
