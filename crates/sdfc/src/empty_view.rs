@@ -19,7 +19,7 @@ pub(crate) fn why_empty(
     if program.is_planar() {
         return None;
     }
-    let Some(Camera { eye, .. }) = program.settings.camera else { return None };
+    let Camera { eye, .. } = program.settings.camera?;
     let [x, y, z, _] = *evaluate_frame(&program.graph, &[eye], values).first()?;
     if scene.field(values).ok()?.distance([x, y, z]) < 0.0 {
         return Some(format!("the camera is inside of a solid: move its `eye`, {REMEDY}"));

@@ -58,6 +58,7 @@ mod clearance;
 mod compiler;
 mod derived_bounds;
 mod diagnostics;
+#[cfg(feature = "render")]
 mod empty_view;
 mod error;
 mod explain;
