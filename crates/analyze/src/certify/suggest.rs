@@ -15,8 +15,8 @@ const OPERATIONS: usize = 1 << 22;
 const SAMPLES: usize = 12;
 /// The number of points, the steepest ones, from which steeper ones are sought.
 const STARTS: usize = 16;
-/// The number of times that steeper points are sought around a point.
-const ROUNDS: usize = 64;
+/// The number of halvings of the distance at which a steeper point is sought.
+const HALVINGS: usize = 24;
 /// A suggested constant divided by the largest slope that was found.
 const MARGIN: f64 = 1.2;
 /// A field has no constant if its slope grows by more than this factor near a sample.
@@ -154,8 +154,7 @@ fn climbed(
     (mut at, mut most): ([f64; 3], f64),
 ) -> ([f64; 3], f64) {
     let mut fraction = 1.0 / SAMPLES as f64;
-    for _ in 0..ROUNDS {
-        let before = most;
+    for _ in 0..HALVINGS {
         for axis in 0..3 {
             let [lo, hi] = region[axis];
             for sign in [-1.0, 1.0] {
@@ -167,9 +166,7 @@ fn climbed(
                 }
             }
         }
-        if most <= before {
-            fraction *= 0.5;
-        }
+        fraction *= 0.5;
     }
     (at, most)
 }

@@ -72,6 +72,7 @@ impl<'p> PictureLinker<'p> {
         let writes_pixels = matches!(form, Form::Compute | Form::Normals);
         features.records_gaps = writes_pixels && method.calls(stubs::RECORD_GAP);
         features.parallel = parallel.unwrap_or(features.parallel);
+        features.estimated &= form != Form::Normals;
         let mut bindings = analytic_bindings(program, features);
         let steps = features.steps() && !features.analytic;
         if steps || features.occlusion {
