@@ -147,8 +147,8 @@ impl<'r> Compiler<'r> {
 
     /// Makes constants of all params: their values come from [`Compiler::compile_with`], from
     /// [`Compiler::values`], or are the defaults. Formulas are shorter then, and more can be proven
-    /// about them. Meshes, contours and measurements of one set of values gain most: a polygon whose
-    /// corners depend on a param takes 60 times as long as one with constant corners.
+    /// about them. Meshes, contours and measurements of one set of values gain most: a polygon
+    /// whose corners depend on a param takes 60 times as long as one with constant corners.
     ///
     /// ```
     /// use sdfc::Compiler;

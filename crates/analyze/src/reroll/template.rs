@@ -1,14 +1,16 @@
 //! The formula that nodes share which are equal up to constants.
 //!
-//! [`template`] builds the common formula of nodes with equal [`ShapeKeys`], in which lists hold the
-//! constants that differ.
+//! [`template`] builds the common formula of nodes with equal [`ShapeKeys`], in which lists hold
+//! the constants that differ.
 
 use rustc_hash::FxHashMap;
-use sdfc_graph::{Binary, Const, Graph, Node, NodeId, Stage, Table, TableId, Ternary, Type};
+use sdfc_graph::{
+    Binary, Const, Graph, MAX_LOOP_DEPTH, Node, NodeId, Stage, Table, TableId, Ternary, Type, Unary,
+};
 
 use crate::reroll::linear::{Linear, MAX_INPUTS};
 use crate::reroll::nested::{JoinedList, NestedLoop, nested_variable};
-use crate::reroll::shape_keys::{Operation, ShapeKeys, View};
+use crate::reroll::shape_keys::{LoopForm, Operation, ShapeKeys, View};
 
 /// Largest number of subexpressions of a template. Larger ones are not worth a loop.
 const MAX_COLUMNS: usize = 4096;
@@ -17,7 +19,7 @@ const MAX_COLUMNS: usize = 4096;
 const MAX_FRAME_OPERATIONS: usize = 16;
 
 /// A subexpression of the template.
-pub(super) enum Expression {
+enum Expression {
     /// The same node in every iteration, or one that the caller gave.
     Same(NodeId),
     /// Constants that differ, by the index of their column.
@@ -30,13 +32,13 @@ pub(super) enum Expression {
     Loop(NestedLoop),
 }
 
-pub(super) struct Merging<'a> {
-    pub(super) graph: &'a mut Graph,
+struct Merging<'a> {
+    graph: &'a mut Graph,
     keys: &'a mut ShapeKeys,
-    pub(super) expressions: Vec<Expression>,
+    expressions: Vec<Expression>,
     known: FxHashMap<Vec<NodeId>, usize>,
     columns: Vec<Vec<Const>>,
-    pub(super) joined: FxHashMap<Vec<TableId>, JoinedList>,
+    joined: FxHashMap<Vec<TableId>, JoinedList>,
     /// The number of per-frame operations that iterations repeat.
     frame_operations: usize,
 }
@@ -73,7 +75,7 @@ impl Merging<'_> {
         index
     }
 
-    pub(super) fn expression(&mut self, column: Vec<NodeId>) -> Option<usize> {
+    fn expression(&mut self, column: Vec<NodeId>) -> Option<usize> {
         if let Some(&known) = self.known.get(&column) {
             return Some(known);
         }
@@ -147,6 +149,60 @@ impl Merging<'_> {
         Some(self.add(column, expression))
     }
 
+    /// The elements of some lists, at the index that a subexpression gives.
+    fn element(&mut self, column: &[NodeId], index: usize) -> Option<Expression> {
+        let list_of = |&id: &NodeId| {
+            let Node::Element(list, ..) = self.graph.node(id) else { return None };
+            Some(list)
+        };
+        let lists: Vec<TableId> = column.iter().map(list_of).collect::<Option<_>>()?;
+        if lists.iter().all(|&list| list == lists[0]) {
+            return Some(Expression::Element(lists[0], index));
+        }
+        if !self.joined.contains_key(&lists) {
+            let joined = JoinedList::new(self.graph, &lists);
+            self.joined.insert(lists.clone(), joined);
+        }
+        let JoinedList { list, firsts, lasts } = self.joined.get(&lists)?.clone();
+        // Each list has its own end, to which indices are clamped.
+        let numbers =
+            |numbers: Vec<usize>| numbers.into_iter().map(|it| [it as f64, 0.0, 0.0, 0.0]);
+        let first = self.constants(Type::Scalar, numbers(firsts))?;
+        let last = self.constants(Type::Scalar, numbers(lasts))?;
+        let zero = self.constants(Type::Scalar, column.iter().map(|_| [0.0; 4]))?;
+        let whole = self.push(Operation::Unary(Unary::Floor), vec![index]);
+        let clamped = self.push(Operation::Ternary(Ternary::Clamp), vec![whole, zero, last]);
+        let index = self.push(Operation::Binary(Binary::Add), vec![first, clamped]);
+        Some(Expression::Element(list, index))
+    }
+
+    /// A part of the state after loops of one form. `arguments` are the subexpressions of their
+    /// nodes.
+    fn nested_loop(
+        &mut self,
+        column: &[NodeId],
+        (form, part): (LoopForm, u16),
+        arguments: Vec<usize>,
+    ) -> Option<Expression> {
+        if form.depth + 1 >= MAX_LOOP_DEPTH {
+            return None;
+        }
+        let iterations_of = |&id: &NodeId| {
+            let Node::Loop(id, ..) = self.graph.node(id) else { return None };
+            Some(self.graph.loop_at(id).max_iterations)
+        };
+        let all: Vec<u32> = column.iter().map(iterations_of).collect::<Option<_>>()?;
+        let max_iterations = all.iter().copied().max()?;
+        let limit = if all.iter().all(|&it| it == max_iterations) {
+            None
+        } else {
+            Some(
+                self.constants(Type::Scalar, all.iter().map(|&it| [f64::from(it), 0.0, 0.0, 0.0]))?,
+            )
+        };
+        Some(Expression::Loop(NestedLoop { form, part, max_iterations, limit, arguments }))
+    }
+
     /// The linear functions of a column as one function of the inputs, whose factors are columns.
     fn linear(&mut self, column: &[NodeId]) -> Option<usize> {
         let ty = self.graph.ty(*column.first()?);
@@ -174,16 +230,12 @@ impl Merging<'_> {
     }
 
     /// The subexpression of a column of constants.
-    pub(super) fn constants(
-        &mut self,
-        ty: Type,
-        lanes: impl Iterator<Item = [f64; 4]>,
-    ) -> Option<usize> {
+    fn constants(&mut self, ty: Type, lanes: impl Iterator<Item = [f64; 4]>) -> Option<usize> {
         let column = lanes.map(|lanes| self.graph.constant(ty, &lanes[..ty.width()])).collect();
         self.expression(column)
     }
 
-    pub(super) fn push(&mut self, operation: Operation, arguments: Vec<usize>) -> usize {
+    fn push(&mut self, operation: Operation, arguments: Vec<usize>) -> usize {
         self.expressions.push(Expression::Operation(operation, arguments));
         self.expressions.len() - 1
     }

@@ -1,17 +1,14 @@
 //! Guarded operands, which are evaluated in a branch.
 
-use rustc_hash::{FxHashMap, FxHashSet};
+use rustc_hash::FxHashSet;
 use sdfc_graph::{Graph, GuardedValue, Loop, LoopVar, Node, NodeId, guarded_value};
 
 use super::body::Value;
 use super::inputs::Inputs;
-use super::lowering::Lowering;
+use super::lowering::{Branches, Lowering};
 use super::types;
 use super::uses::reads;
 use crate::error::Error;
-
-/// The nodes that are computed in the branch of each guarded value.
-pub(super) type Branches = FxHashMap<NodeId, Vec<NodeId>>;
 
 impl Lowering<'_> {
     /// Splits ascending nodes into those that only the operand of a guarded value needs, and all

@@ -7,9 +7,9 @@ use naga::{
 use sdfc_graph::{LoopId, LoopVar, Node, NodeId, SkipCondition, TableId, Type};
 
 use super::body::{Body, Value};
-use super::guards::{Branches, guard_of_loop, nodes_for};
+use super::guards::{guard_of_loop, nodes_for};
 use super::iteration::Iteration;
-use super::lowering::{Lowering, POINT, hint};
+use super::lowering::{Branches, Lowering, POINT, hint};
 use super::types;
 use crate::error::Error;
 

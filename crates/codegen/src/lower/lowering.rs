@@ -10,7 +10,6 @@ use rustc_hash::FxHashMap;
 use sdfc_graph::{Binary, Const, IdMap, LoopId, Node, NodeId, Program, Type};
 
 use super::body::{Body, Value};
-use super::guards::Branches;
 use super::inputs::{Inputs, frame_name, input_name};
 use super::iteration::Iteration;
 use super::types;
@@ -100,6 +99,9 @@ pub(crate) fn store_function(
     }
     Ok(lowering.body.finish(None))
 }
+
+/// The nodes that are computed in the branch of each guarded value.
+pub(super) type Branches = FxHashMap<NodeId, Vec<NodeId>>;
 
 /// A function while its nodes are lowered.
 pub(super) struct Lowering<'a> {
