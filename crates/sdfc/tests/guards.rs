@@ -4,7 +4,9 @@
 #![allow(clippy::expect_used, reason = "a test stops where it fails")]
 
 use libtest_mimic::{Arguments, Failed, Trial};
-use sdfc::{Compiler, FrameValues, Method, Scene, no_progress};
+use sdfc::{
+    Backend, Compiler, FrameValues, LoopStrategy, Method, PictureOptions, Scene, no_progress,
+};
 use sdfc_codegen::{FieldOptions, field_module, render_module};
 use sdfc_graph::eval::Tape;
 use sdfc_graph::{Dim, NodeId, Program, guarded_distance, substitute};
@@ -29,6 +31,11 @@ const SWEEP: &str =
     "sweep(circle(0.25), [for i in 0..9: [cos(i * 50deg), 0.2 * i - 0.8, sin(i * 50deg)]])";
 const BLENDED: &str = "union(text(\"sd\", size: 0.8, align: \"center\").extrude(0.2), \
                        box([2, 0.2, 0.4]), blend: smooth(0.1))";
+
+/// Words with outlines of different lengths, which share loops.
+const LOOP: &str = "union(for i in 0..6: text(str(37 * i + 8), size: 0.6, align: \"center\")
+  .extrude(0.2).rotate(y: 7deg + 20deg * i).translate([0.8 * (i % 3) - 0.8, 0.7 * (i % 2), -0.1 * i])
+  .color(hsl(40deg * i, 0.7, 0.5)))\nplane(y: -0.1)\nsphere(0.3).translate([0.2, 0.4, 0.5])\n";
 
 /// A test of a scene.
 type Test = fn(&Scene) -> Result<(), Failed>;
@@ -81,6 +88,10 @@ fn main() {
         }
     }
     trials.push(Trial::test("limit of a sweep", || is_a_closer_bound(SWEEP)));
+    trials.push(Trial::test("values of words in a loop", || same_values_of_loops(LOOP)));
+    let drawn = Trial::test("picture of words in a loop", || same_picture_of_loops(LOOP));
+    trials.push(drawn.with_ignored_flag(testing::without_gpu()));
+    trials.push(Trial::test("a loop that ends early", ends_early));
     libtest_mimic::run(&Arguments::from_args(), trials).exit();
 }
 
@@ -237,13 +248,68 @@ fn same_picture(scene: &Scene) -> Result<(), Failed> {
     if hits < 400 {
         return Err(format!("only {hits} pixels show something").into());
     }
-    for (place, (a, b)) in guarded.pixels().iter().zip(plain.pixels()).enumerate() {
+    are_same(&guarded, &plain)
+}
+
+fn are_same(one: &Image, other: &Image) -> Result<(), Failed> {
+    for (place, (a, b)) in one.pixels().iter().zip(other.pixels()).enumerate() {
         let color = a.color.iter().zip(b.color).any(|(a, b)| (a - b).abs() > 1.0 / 255.0);
         if a.status != b.status || color || (a.depth - b.depth).abs() > 1e-4 {
             return Err(format!("at {place}, {a:?} and {b:?}").into());
         }
     }
     Ok(())
+}
+
+/// A scene without and with loops over similar operands.
+fn with_loops(text: &str) -> [Scene; 2] {
+    [LoopStrategy::Unrolled, LoopStrategy::Looped].map(|loops| {
+        let compiler = Compiler::new().loops(loops);
+        compiler.compile("looped.sdf", &format!("{text}{CAMERA}")).expect("compiles")
+    })
+}
+
+/// Operands of loops that are evaluated only near their boxes leave all values as they are.
+fn same_values_of_loops(text: &str) -> Result<(), Failed> {
+    let [_, looped] = with_loops(text);
+    let (program, frame) = (looped.program(), FrameValues::default());
+    let guarded = program.guarded();
+    let fields = [program, &guarded].map(|it| it.distance);
+    let [Some(plain), Some(new)] = fields else { return Err("nothing is drawn".into()) };
+    if looped.report().loops.is_empty() || plain == new {
+        return Err("no loop has guards".into());
+    }
+    let old = values(program, &[plain], &frame);
+    for (point, (old, new)) in points().zip(old.iter().zip(values(&guarded, &[new], &frame))) {
+        if (old[0] - new[0]).abs() > PRECISION {
+            return Err(format!("at {point:?} {} became {}", old[0], new[0]).into());
+        }
+    }
+    Ok(())
+}
+
+/// The same picture, although rays visit the operands alone that may matter to them.
+fn same_picture_of_loops(text: &str) -> Result<(), Failed> {
+    let options = PictureOptions::new().size(SIZE).backend(Backend::Gpu).samples(1);
+    let [plain, looped] = with_loops(text);
+    let [plain, looped] =
+        [plain.render(&options, &mut no_progress)?, looped.render(&options, &mut no_progress)?];
+    are_same(&looped.image, &plain.image)
+}
+
+/// Iterations after the end of a loop do not count, even if their guard would find them.
+fn ends_early() -> Result<(), Failed> {
+    let text = "let radii = [0.2, 0.4, 0.1, 0.6, 0.3]\nsolid s() lipschitz 1 = {\n  \
+                let d = length(p)\n  iterate(radii, 9, fn(s, r) = if d - r < s { min(s, d - r) } \
+                else { s }, while: fn(s) = s > d - 0.3)\n}\ns()\n";
+    let scene = compiled(&format!("{text}{CAMERA}"));
+    let code = field_module(scene.program(), &FieldOptions::default())?.wgsl()?;
+    let body = code.split_once("fn sdf_distance").ok_or("there is no distance")?.1;
+    let body = body.split_once("fn sdf_gradient").ok_or("there is no gradient")?.0;
+    match body.matches("loop {").count() {
+        1 => Ok(()),
+        loops => Err(format!("{loops} loops\n{body}").into()),
+    }
 }
 
 fn picture(scene: &Scene, program: &Program) -> Result<Image, Failed> {

@@ -65,9 +65,10 @@ impl Lowering<'_> {
     }
 }
 
-/// The guard of a loop that takes the minimum of its operands.
+/// The guard of a loop that takes the minimum of its operands. A loop with a condition has none:
+/// the condition may depend on iterations that are passed by.
 pub(super) fn guard_of_loop(graph: &Graph, looped: &Loop) -> Option<GuardedValue> {
-    let &[step] = looped.step.as_slice() else { return None };
+    let (&[step], None) = (looped.step.as_slice(), looped.condition) else { return None };
     let guarded = guarded_value(graph, step, &[])?;
     let is_state = matches!(graph.node(guarded.without), Node::Variable(depth, LoopVar::State(0), _)
         if depth == looped.depth);
