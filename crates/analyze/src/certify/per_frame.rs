@@ -33,7 +33,7 @@ pub(super) fn scaled_rotation(
     }
     let squares = squared_lengths_of_orthogonal(&sums.rows)?;
     let factors: Option<Vec<f64>> =
-        squares.iter().map(|square| Some(square.constant()?.sqrt())).collect();
+        squares.iter().map(|square| Some(square.constant()?.max(0.0).sqrt())).collect();
     Some(ScaledRotation { values: sums.values, factors: factors? })
 }
 

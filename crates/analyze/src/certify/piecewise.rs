@@ -37,7 +37,7 @@ pub(crate) fn constant(
     let mut map = Map::identity((0..width).map(|lane| (node, lane)).collect());
     let mut factor = 1.0;
     let mut few: Option<Map> = None;
-    // The maps with at most three columns since the last rotation by a per-frame value.
+    // The maps with at most three columns since `factor` has changed.
     let mut narrow: Vec<Map> = Vec::new();
     for step in 0..MAX_STEPS {
         map.drop_columns(graph, level);
@@ -78,6 +78,7 @@ pub(crate) fn constant(
             let last = few.take()?;
             factor *= last.norm();
             map = Map::identity(last.columns);
+            narrow.clear();
         }
     }
     None
