@@ -8,8 +8,8 @@ use crate::scene::Scene;
 
 const REMEDY: &str = "or leave out `camera(...)` to see the whole scene";
 
-/// Returns why a whole picture by the scene's own camera shows nothing, or what is inside of a
-/// solid. `None` if it shows something, or if the camera sees the whole scene anyway.
+/// Returns why a whole picture by the scene's own camera shows nothing, or only the inside of a
+/// solid. `None` for other pictures, and without a `camera(...)`, which sees the whole scene.
 pub(crate) fn why_empty(
     scene: &Scene,
     values: &FrameValues,

@@ -95,7 +95,10 @@ fn a_flat_field_is_shaded_as_a_distance() {
         compiled(&text).render(&options, &mut no_progress).unwrap().image
     };
     let distance = image("sphere(1)");
-    let flat = image("sphere(1).displace(fn(q) lipschitz 7 = 1e-4 * sin(q.x))");
+    // Outside, this is the distance.
+    let flat = image(
+        "solid flat() lipschitz 8 = { let d = length(p) - 1\n if d < 0 { 8 * d } else { d } }\nflat()",
+    );
     let colors = |image: &sdfc_render::Image| -> Vec<[f32; 4]> {
         image.pixels().iter().map(|pixel| pixel.color).collect()
     };

@@ -86,10 +86,14 @@ pub(super) fn counterpart(graph: &Graph, lane: Lane, others: &[Lane]) -> Option<
     others.iter().position(is_counterpart)
 }
 
-/// A multiple of a lane; a number is the same in all lanes.
+/// A multiple of a lane.
 fn term(graph: &Graph, id: NodeId, lane: usize, factor: f64) -> (Lane, f64) {
-    let lane = if graph.ty(id).width() == 1 { 0 } else { lane };
-    ((id, lane), factor)
+    (lane_of(graph, id, lane), factor)
+}
+
+/// A lane of a value; a number is the same in all lanes.
+pub(super) fn lane_of(graph: &Graph, id: NodeId, lane: usize) -> Lane {
+    (id, if graph.ty(id).width() == 1 { 0 } else { lane })
 }
 
 /// The ends of the range of a function's slope, or its slopes on the two sides of its crease.

@@ -14,7 +14,7 @@ pub(crate) mod local_slope;
 pub(crate) mod maps;
 pub(crate) mod norms;
 pub(crate) mod per_frame;
-mod piecewise;
+pub(crate) mod piecewise;
 pub(crate) mod promise;
 pub(crate) mod quality;
 pub(crate) mod reason;

@@ -3,7 +3,7 @@
 use sdfc_graph::{Binary, Graph, Node, NodeId, Polynomial, squared_lengths_of_orthogonal};
 
 use crate::certify::affine::is_fixed;
-use crate::certify::branches::{Lane, branches};
+use crate::certify::branches::{Lane, branches, lane_of};
 
 /// Largest number of operations that are followed.
 const MAX_STEPS: usize = 128;
@@ -90,24 +90,19 @@ fn terms(graph: &mut Graph, lane: Lane, level: u16) -> Option<Vec<(Lane, Polynom
         && (is_fixed(a) || is_fixed(b))
     {
         let (factor, value) = if is_fixed(a) { (a, b) } else { (b, a) };
-        Some(vec![(own(graph, value, at), coefficient(graph, factor, at)?)])
+        Some(vec![(lane_of(graph, value, at), coefficient(graph, factor, at)?)])
     } else if let Node::Transform(columns, v) = graph.node(node)
         && columns.iter().all(|&column| is_fixed(column))
     {
-        let term = |i: usize| Some((own(graph, v, i), coefficient(graph, columns[i], at)?));
+        let term = |i: usize| Some((lane_of(graph, v, i), coefficient(graph, columns[i], at)?));
         (0..columns.len()).map(term).collect()
     } else {
         None
     }
 }
 
-/// A lane of a value; a number is the same in all lanes.
-fn own(graph: &Graph, id: NodeId, lane: usize) -> Lane {
-    (id, if graph.ty(id).width() == 1 { 0 } else { lane })
-}
-
 fn coefficient(graph: &mut Graph, id: NodeId, lane: usize) -> Option<Polynomial> {
-    let (id, lane) = own(graph, id, lane);
+    let (id, lane) = lane_of(graph, id, lane);
     let component = graph.component(id, lane as u8);
     Polynomial::of(graph, component)
 }

@@ -36,10 +36,9 @@ pub(crate) fn constant(
     let width = graph.ty(node).width();
     let mut map = Map::identity((0..width).map(|lane| (node, lane)).collect());
     let mut factor = 1.0;
-    let mut few: Option<Map> = None;
     // The maps with at most three columns since `factor` has changed.
     let mut narrow: Vec<Map> = Vec::new();
-    for step in 0..MAX_STEPS {
+    for _ in 0..MAX_STEPS {
         map.drop_columns(graph, level);
         let end = map.end(graph);
         if let Some(end) = end.filter(|&end| is_point(graph, end, level)) {
@@ -55,7 +54,6 @@ pub(crate) fn constant(
         }
         if map.columns.len() <= 3 {
             narrow.push(map.clone());
-            few = Some(map.clone()).filter(|_| step > 0);
         }
         if !map.expand(graph, level) {
             let rotated = |before: &Map| {
@@ -75,7 +73,7 @@ pub(crate) fn constant(
         }
         if map.matrices.len() > MAX_MATRICES {
             // |AB| <= |A| |B|: go on with the norm of the matrices so far.
-            let last = few.take()?;
+            let last = narrow.pop()?;
             factor *= last.norm();
             map = Map::identity(last.columns);
             narrow.clear();

@@ -31,8 +31,8 @@ pub fn run(args: &args::Mesh, console: &Console) -> Result<(), Failure> {
     print(&output.path, &mesh, console);
     if lies_inside(&scene, &mesh, args.values.time) {
         console.note(
-            "it lies inside of the solid: where two parts only share a face, the distance is 0 \
-             there; let them overlap a little",
+            "this box is inside of the solid: where two parts only share a face, the distance is \
+             0; let them overlap a little",
         );
     }
     Ok(())

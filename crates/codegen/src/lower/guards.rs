@@ -1,7 +1,7 @@
 //! Guarded operands, which are evaluated in a branch.
 
 use rustc_hash::FxHashSet;
-use sdfc_graph::{Graph, GuardedValue, Loop, LoopVar, Node, NodeId, guarded_value};
+use sdfc_graph::{Graph, Node, NodeId, guarded_value};
 
 use super::body::Value;
 use super::inputs::Inputs;
@@ -63,35 +63,6 @@ impl Lowering<'_> {
         self.forget(within.iter());
         Ok(self.body.load(variable, "s"))
     }
-}
-
-/// The guard of a loop that takes the minimum of its operands. A loop with a condition has none:
-/// the condition may depend on iterations that are passed by.
-pub(super) fn guard_of_loop(graph: &Graph, looped: &Loop) -> Option<GuardedValue> {
-    let (&[step], None) = (looped.step.as_slice(), looped.condition) else { return None };
-    let guarded = guarded_value(graph, step, &[])?;
-    let is_state = matches!(graph.node(guarded.without), Node::Variable(depth, LoopVar::State(0), _)
-        if depth == looped.depth);
-    is_state.then_some(guarded)
-}
-
-/// Those of ascending nodes that are read for the roots.
-pub(super) fn nodes_for(
-    graph: &Graph,
-    nodes: &[NodeId],
-    roots: &[NodeId],
-    inputs: &Inputs,
-) -> Vec<NodeId> {
-    let mut read: FxHashSet<NodeId> = roots.iter().copied().collect();
-    let mut found = Vec::new();
-    for &id in nodes.iter().rev() {
-        if read.contains(&id) {
-            found.push(id);
-            read.extend(reads(graph, id, inputs));
-        }
-    }
-    found.reverse();
-    found
 }
 
 /// The nodes that are read for `root` alone, and `root` itself, if it is read once; all nodes are

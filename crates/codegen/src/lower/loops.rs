@@ -7,7 +7,6 @@ use naga::{
 use sdfc_graph::{LoopId, LoopVar, Node, NodeId, SkipCondition, TableId, Type};
 
 use super::body::{Body, Value};
-use super::guards::{guard_of_loop, nodes_for};
 use super::iteration::Iteration;
 use super::lowering::{Branches, Lowering, POINT, hint};
 use super::types;
@@ -21,16 +20,6 @@ const MAX_KNOWN: u32 = 8;
 struct Listed {
     first: Value,
     end: Value,
-}
-
-/// How the iterations of a loop are counted.
-struct Counting {
-    /// The variable with the number of the iteration, or with its index in a list.
-    counter: Value,
-    limit: Value,
-    /// The number of all iterations, if those that run are listed.
-    listed: Option<u32>,
-    depth: usize,
 }
 
 impl Lowering<'_> {
@@ -65,31 +54,32 @@ impl Lowering<'_> {
         let graph = &self.program.graph;
         let (looped, body) = (graph.loop_at(id).clone(), graph.loop_body(id));
         let listed = self.listed(looped.skip);
-        let (first, limit, ty) = match &listed {
-            Some(listed) => (listed.first, listed.end, types::words(self.types, Type::Scalar)),
+        let (first, limit, ty, name) = match &listed {
+            Some(listed) => {
+                (listed.first, listed.end, types::words(self.types, Type::Scalar), "at")
+            }
             None => {
                 let limit = self.limit(looped.max_iterations, looped.count)?;
-                (self.body.literal(0.0), limit, types::value(self.types, Type::Scalar))
+                (self.body.literal(0.0), limit, types::value(self.types, Type::Scalar), "i")
             }
         };
         let counter = self.body.variable("iteration", ty);
         self.body.store(counter, first);
         let state = self.state(&looped.init)?;
-        let counting = Counting {
-            counter,
-            limit,
-            listed: listed.map(|_| looped.max_iterations),
-            depth: usize::from(looped.depth),
-        };
-        let guard = guard_of_loop(graph, &looped);
-        let step = guard.map_or(looped.step, |guard| vec![guard.with_operand]);
 
         self.body.open_block();
         let matrices = self.matrices.clone();
-        if let Some(guard) = guard {
-            self.seek(&counting, &state, guard.condition, &body.step)?;
-        }
-        let counted = self.start_iteration(&counting, &state);
+        let counted = self.body.load(counter, name);
+        let past = self.body.binary(BinaryOperator::GreaterEqual, counted, limit);
+        self.body.break_if(past);
+        let is_listed = listed.is_some();
+        let listed = listed.and_then(|_| self.listed_iteration(counted));
+        let number = listed.map_or(counted, |(number, _)| number);
+        let listed = listed.map(|(_, word)| (word, looped.max_iterations));
+        let read = state.iter().map(|&(variable, name)| self.body.load(variable, name)).collect();
+        let depth = usize::from(looped.depth);
+        self.iterations.resize_with(self.iterations.len().max(depth + 1), || None);
+        self.iterations[depth] = Some(Iteration { number, listed, state: read });
         // The rest of the iteration may read what is computed for the condition, so no branch does.
         let needed = self.needed(&body.condition);
         self.visit_with(&Branches::default(), looped.condition.as_slice(), &needed)?;
@@ -99,72 +89,22 @@ impl Lowering<'_> {
             let ends = self.body.compute(not, &[condition]);
             self.body.break_if(ends);
         }
-        let needed = nodes_for(graph, &self.needed(&body.step), &step, self.inputs);
-        self.visit(&step, &needed)?;
-        let next = step.iter().map(|&part| self.value(part));
+        let needed = self.needed(&body.step);
+        self.visit(&looped.step, &needed)?;
+        let next = looped.step.iter().map(|&part| self.value(part));
         let next: Vec<Value> = next.collect::<Result<_, _>>()?;
         for (&(variable, _), next) in state.iter().zip(next) {
             self.body.store(variable, next);
         }
-        self.advance(&counting, counted);
+        let one = if is_listed { self.body.word(1) } else { self.body.literal(1.0) };
+        let following = self.body.binary(BinaryOperator::Add, counted, one);
+        self.body.store(counter, following);
         self.body.close_loop();
 
-        self.iterations[counting.depth] = None;
+        self.iterations[depth] = None;
         self.matrices = matrices;
         self.forget(body.condition.iter().chain(&body.step));
         Ok(state.into_iter().map(|(variable, name)| self.body.load(variable, name)).collect())
-    }
-
-    /// Advances the counter to the first iteration whose operand matters. All other iterations
-    /// would compute their operand, too, on drivers that run both sides of a branch.
-    fn seek(
-        &mut self,
-        counting: &Counting,
-        state: &[(Value, &'static str)],
-        matters: NodeId,
-        nodes: &[NodeId],
-    ) -> Result<(), Error> {
-        let graph = &self.program.graph;
-        let needed = nodes_for(graph, &self.needed(nodes), &[matters], self.inputs);
-        self.body.open_block();
-        let matrices = self.matrices.clone();
-        let counted = self.start_iteration(counting, state);
-        self.visit_with(&Branches::default(), &[matters], &needed)?;
-        let matters = self.value(matters)?;
-        self.body.break_if(matters);
-        self.advance(counting, counted);
-        self.body.close_loop();
-        self.matrices = matrices;
-        self.forget(needed.iter());
-        Ok(())
-    }
-
-    /// Leaves the loop after the last iteration; otherwise reads what an iteration needs. Returns
-    /// the value of the counter.
-    fn start_iteration(&mut self, counting: &Counting, state: &[(Value, &'static str)]) -> Value {
-        let name = if counting.listed.is_some() { "at" } else { "i" };
-        let counted = self.body.load(counting.counter, name);
-        let past = self.body.binary(BinaryOperator::GreaterEqual, counted, counting.limit);
-        self.body.break_if(past);
-        let listed = counting.listed.and_then(|cap| {
-            let (number, word) = self.listed_iteration(counted)?;
-            Some((number, (word, cap)))
-        });
-        let (number, listed) = match listed {
-            Some((number, word)) => (number, Some(word)),
-            None => (counted, None),
-        };
-        let state = state.iter().map(|&(variable, name)| self.body.load(variable, name)).collect();
-        self.iterations.resize_with(self.iterations.len().max(counting.depth + 1), || None);
-        self.iterations[counting.depth] = Some(Iteration { number, listed, state });
-        counted
-    }
-
-    fn advance(&mut self, counting: &Counting, counted: Value) {
-        let is_listed = counting.listed.is_some();
-        let one = if is_listed { self.body.word(1) } else { self.body.literal(1.0) };
-        let following = self.body.binary(BinaryOperator::Add, counted, one);
-        self.body.store(counting.counter, following);
     }
 
     /// The distance, or the lower bound on what the lists leave out if that is smaller.
