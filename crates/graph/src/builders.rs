@@ -146,14 +146,17 @@ impl Graph {
         results
     }
 
-    /// One part of the state after a loop like this one over other nodes.
+    /// One part of the state after a loop like this one over other nodes, with `around` more loops
+    /// around it.
     pub(crate) fn rebuild_loop(
         &mut self,
         id: LoopId,
         position: u16,
+        around: u8,
         map: impl FnMut(NodeId) -> NodeId,
     ) -> NodeId {
-        let loop_ = self.loop_at(id).map(map);
+        let mut loop_ = self.loop_at(id).map(map);
+        loop_.depth += around;
         self.add_loop(loop_)[usize::from(position)]
     }
 

@@ -3,7 +3,8 @@
 //! An instance's formula is written in the point of its level and samples other shapes. Expanding
 //! it at a point replaces its point by that point, and each sample by the sampled shape's formula,
 //! expanded at the sample's point. A shape of level L sees the points of the formulas around it: if
-//! it is sampled at q where those points are E, its own points are E\[0..L\] and q.
+//! it is sampled at q where those points are E, its own points are E\[0..L\] and q. If q depends on
+//! a loop, the loops of the sampled shape are nested in it.
 
 mod chains;
 mod environment;
@@ -98,7 +99,7 @@ impl std::error::Error for ExpandError {}
 #[derive(Clone, Debug)]
 pub struct Expander {
     environments: Environments,
-    done: FxHashMap<(NodeId, Env), NodeId>,
+    done: FxHashMap<Key, NodeId>,
     materials: FxHashMap<ShapeId, Material>,
     /// Where materials with chains were expanded.
     blended: Expanded,
@@ -130,6 +131,10 @@ enum Step {
 
 /// A node under the points around it.
 type Task = (NodeId, Env);
+
+/// A node, the points that it depends on, and the number of loops around its formula if it lies in
+/// one of the formula's own.
+type Key = (NodeId, Env, u8);
 
 impl Expander {
     /// An expander with an empty cache.
@@ -219,7 +224,7 @@ impl Expander {
         node: NodeId,
         points: &[NodeId],
     ) -> Result<NodeId, ExpandError> {
-        let env = self.environments.of(points);
+        let env = self.environments.of(graph, points);
         self.expand(graph, (node, env))
     }
 
@@ -243,7 +248,7 @@ impl Expander {
         point: NodeId,
         sample: NodeId,
     ) -> Result<NodeId, ExpandError> {
-        let inner = self.environments.of(outer);
+        let inner = self.environments.of(graph, outer);
         let env = self.inside(graph, shape, inner, point)?;
         let formula = self.formula_of(graph, sample, env);
         let result = self.expand(graph, (formula, env))?;
@@ -267,7 +272,7 @@ impl Expander {
         if self.environments.depth(outer) < level {
             return Err(ExpandError::MissingPoint { level: level - 1 });
         }
-        Ok(self.environments.push(outer, point))
+        Ok(self.environments.push(graph, outer, point))
     }
 
     /// The formula that replaces a sample, in the sampled shape's own point. `env` are the points
@@ -336,6 +341,10 @@ impl Expander {
             let point = self.environments.point(env, level);
             return point.map(Step::Done).ok_or(ExpandError::MissingPoint { level });
         }
+        let around = self.environments.loops(env);
+        if let Node::Variable(depth, variable, ty) = graph.node(node) {
+            return Ok(Step::Done(graph.variable(depth + around, variable, ty)));
+        }
         let before = stack.len();
         self.arguments.clear();
         for argument in graph.arguments(node) {
@@ -347,9 +356,14 @@ impl Expander {
         if stack.len() > before {
             return Ok(Step::Wait);
         }
+        let find = |old| self.arguments.iter().find(|pair| pair.0 == old);
+        let expanded = |old| find(old).map_or(old, |pair| pair.1);
         match graph.node(node) {
             Node::Sample(shape, point) | Node::MaterialAt(shape, point, _) => {
                 self.step_into(graph, node, shape, (point, env), stack)
+            }
+            Node::Loop(id, position, _) => {
+                Ok(Step::Done(graph.rebuild_loop(id, position, around, expanded)))
             }
             Node::Const(_)
             | Node::Point(..)
@@ -362,11 +376,7 @@ impl Expander {
             | Node::Swizzle(..)
             | Node::Transform(..)
             | Node::Variable(..)
-            | Node::Loop(..)
-            | Node::Element(..) => {
-                let find = |old| self.arguments.iter().find(|pair| pair.0 == old);
-                Ok(Step::Done(graph.rebuild(node, |old| find(old).map_or(old, |pair| pair.1))))
-            }
+            | Node::Element(..) => Ok(Step::Done(graph.rebuild(node, expanded))),
         }
     }
 
@@ -392,8 +402,10 @@ impl Expander {
     }
 
     /// Nodes that depend on fewer points than the environment has share one expansion.
-    fn key(&self, graph: &Graph, node: NodeId, env: Env) -> Task {
-        (node, self.environments.prefix(env, graph.levels(node)))
+    fn key(&self, graph: &Graph, node: NodeId, env: Env) -> Key {
+        let is_in_loop = graph.loops_around(node) != 0;
+        let around = if is_in_loop { self.environments.loops(env) } else { 0 };
+        (node, self.environments.prefix(env, graph.levels(node)), around)
     }
 
     fn lookup(&self, graph: &Graph, (node, env): Task) -> Option<NodeId> {

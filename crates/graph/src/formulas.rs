@@ -4,18 +4,26 @@
 //! box. An outline is an example: at a point, a table tells which pieces may be nearest; over a
 //! box, each piece has its bounds. [`Binary::Alternative`] holds both.
 
+use std::collections::BTreeSet;
+
 use crate::graph::Graph;
 use crate::ids::IdMap;
-use crate::node::{Binary, Node, NodeId};
-use crate::walk::visited;
+use crate::node::{Binary, Node, NodeId, TableId};
+use crate::walk::{reachable, visited};
 
-/// One of the two formulas of a [`Binary::Alternative`].
+/// The most items that the lists of a short formula may have in a shader that people read.
+const MOST_PORTABLE_ITEMS: usize = 1024;
+
+/// A choice between the two formulas of each [`Binary::Alternative`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FormulaChoice {
     /// The first, which is shorter at a point.
     Short,
     /// The second, which has closer bounds over a box.
     Bounded,
+    /// The first, if its lists have at most 1,024 items together; else the second. Shaders that are
+    /// embedded elsewhere hold their lists in their text.
+    Portable,
 }
 
 /// The nodes that the roots are computed from by the chosen formulas, in ascending order. If no
@@ -48,7 +56,19 @@ impl Graph {
         Some(match choice {
             FormulaChoice::Short => short,
             FormulaChoice::Bounded => bounded,
+            FormulaChoice::Portable if self.items_of_lists(short) <= MOST_PORTABLE_ITEMS => short,
+            FormulaChoice::Portable => bounded,
         })
+    }
+
+    /// The number of items of all lists that a formula reads.
+    fn items_of_lists(&self, root: NodeId) -> usize {
+        let list = |id| {
+            if let Node::Element(table, ..) = self.node(id) { Some(table) } else { None }
+        };
+        let lists: BTreeSet<TableId> =
+            reachable(self, &[root]).into_iter().filter_map(list).collect();
+        lists.into_iter().map(|id| self.table(id).elements.len()).sum()
     }
 
     /// The arguments of a node, of an alternative only the chosen one.

@@ -24,6 +24,8 @@ struct Facts {
     levels: u16,
     /// The loops whose variables it depends on, one bit per depth.
     loops: u8,
+    /// The most loops that are nested in its evaluation, those of sampled shapes included.
+    nesting: u8,
 }
 
 /// A Lipschitz constant that the author of a function claims: the result changes by at most
@@ -124,6 +126,17 @@ impl Graph {
     /// depth.
     pub fn loops_around(&self, id: NodeId) -> u8 {
         self.facts[id.index()].loops
+    }
+
+    /// The most loops that are nested when the node is evaluated, those of the distances that it
+    /// samples included.
+    pub fn loop_nesting(&self, id: NodeId) -> u8 {
+        self.facts[id.index()].nesting
+    }
+
+    /// The number of loops that must lie around a new loop which depends on the node.
+    pub(crate) fn next_loop_depth(&self, id: NodeId) -> u8 {
+        (u8::BITS - self.loops_around(id).leading_zeros()) as u8
     }
 
     /// The shape and the point of a sample; `None` for any other node.
@@ -227,25 +240,33 @@ impl Graph {
     }
 
     fn facts_of(&self, node: &Node) -> Facts {
-        let (mut stage, mut levels, mut loops) = (Stage::Const, 0, 0);
+        let (mut stage, mut levels, mut loops, mut nesting) = (Stage::Const, 0, 0, 0);
         for argument in self.arguments_of(node) {
             stage = stage.max(self.stage(argument));
             levels = levels.max(self.levels(argument));
             loops |= self.loops_around(argument);
+            nesting = nesting.max(self.loop_nesting(argument));
         }
         match *node {
             Node::Variable(depth, ..) => (stage, loops) = (Stage::Point, 1 << depth),
-            Node::Loop(id, ..) => (stage, loops) = (Stage::Point, loops & !self.loop_at(id).bit()),
+            Node::Loop(id, ..) => {
+                let loop_ = self.loop_at(id);
+                (stage, loops) = (Stage::Point, loops & !loop_.bit());
+                nesting = nesting.max(loop_.depth + 1);
+            }
             // A direction at the surface depends on the point of no formula.
             Node::Point(level, _) if SurfaceVector::of_level(level).is_some() => {
                 stage = Stage::Point;
             }
             Node::Point(level, _) => (stage, levels) = (Stage::Point, level + 1),
             Node::Frame(..) => stage = Stage::Frame,
-            Node::Sample(shape, _) | Node::MaterialAt(shape, ..) => {
+            Node::Sample(shape, point) | Node::MaterialAt(shape, point, _) => {
                 // A shape's own arguments may depend on outer points.
                 levels = levels.max(self.shape(shape).level);
-                loops |= self.loops_around(self.shape(shape).formula);
+                let formula = self.shape(shape).formula;
+                loops |= self.loops_around(formula);
+                let around = self.next_loop_depth(point);
+                nesting = nesting.max(around.saturating_add(self.loop_nesting(formula)));
                 stage = Stage::Point;
             }
             Node::Const(_)
@@ -260,7 +281,7 @@ impl Graph {
         }
         let ty = result_type(node, |id| self.ty(id));
         let range = range_of(node, |id| self.range(id), ty.width());
-        Facts { ty, stage, range, levels, loops }
+        Facts { ty, stage, range, levels, loops, nesting }
     }
 
     /// Interns a loop.

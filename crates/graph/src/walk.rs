@@ -103,7 +103,7 @@ impl Graph {
     pub fn rebuild(&mut self, id: NodeId, mut map: impl FnMut(NodeId) -> NodeId) -> NodeId {
         match self.node(id) {
             Node::Const(_) | Node::Point(..) | Node::Frame(..) | Node::Variable(..) => id,
-            Node::Loop(loop_, position, _) => self.rebuild_loop(loop_, position, map),
+            Node::Loop(loop_, position, _) => self.rebuild_loop(loop_, position, 0, map),
             Node::Element(table, at, _) => {
                 let at = map(at);
                 self.element_of(table, at)

@@ -1,5 +1,6 @@
-//! Outlines of many pieces have two formulas of one distance: by cells for shaders, by runs of
-//! pieces for everything else.
+//! Outlines and paths of many pieces have two formulas of one distance. The shaders of pictures
+//! find the pieces of an outline by cells and those of a path by balls around them. Everything else
+//! has a formula with bounds.
 
 #![allow(clippy::expect_used, reason = "a test stops where it fails")]
 
@@ -10,17 +11,23 @@ use sdfc_graph::{Binary, FormulaChoice, Node, Program, reachable};
 
 /// Points for each scene and reach.
 const POINTS: u32 = 400;
-/// Half the sides of squares of points, in scene units. Outlines are about one unit large.
+/// Half the sides of cubes of points, in scene units. Outlines are about one unit large.
 const REACHES: [f64; 5] = [0.6, 1.5, 8.0, 300.0, 1e5];
 /// Error of a distance and of a slope, as a fraction of the reach.
 const PRECISION: f64 = 1e-12;
 
-const SCENES: [&str; 5] = [
+const SCENES: [&str; 9] = [
     "text(\"8\")",
     "text(\"Ag&% fi\", size: 0.3, align: \"center\")",
     "text(\"I\")",
     "param size = 0.5 in 0.1..1\ntext(\"two\\nlines\", size: size)",
     "polygon([for i in 0..90: (0.5 + 0.3 * cos(7 * i)) * [cos(i * 4deg), sin(i * 4deg)]])",
+    "circle(0.05).sweep([for i in 0..9: 0.4 * [cos(i), sin(i), 0.3 * i - 1]])",
+    "rect([0.1, 0.04]).sweep([for i in 0..30: 0.4 * [cos(i * 0.4), sin(i * 0.4), 0.1 * i - 1]])",
+    "polygon([[-0.1, 0], [0, -0.1], [0.1, 0], [0, -0.03]])
+      .sweep([for i in 0..9: 0.4 * [cos(i), sin(i), 0.3 * i - 1]])",
+    "param bend: number = 1 in 0.8..1.2
+     circle(0.05).sweep([for i in 0..9: 0.4 * [cos(bend * i), sin(bend * i), 0.3 * i - 1]])",
 ];
 
 fn compiled(source: &str) -> Scene {
@@ -34,20 +41,20 @@ fn has_alternative(program: &Program) -> bool {
 }
 
 /// The distance and its gradient at some points.
-fn values(program: &Program, points: &[[f64; 2]]) -> Vec<[f64; 3]> {
+fn values(program: &Program, points: &[[f64; 3]]) -> Vec<[f64; 4]> {
     let roots = [program.distance.expect("a distance"), program.gradient.expect("a gradient")];
     let tape = Tape::new(&program.graph, &roots).expect("flat math");
     let mut evaluator = tape.prepare::<f64>(&FrameValues::defaults(&program.params));
-    let value = |&[x, y]: &[f64; 2]| {
-        let lanes = evaluator.eval([x, y, 0.0]);
-        [lanes[0][0], lanes[1][0], lanes[1][1]]
+    let value = |&point: &[f64; 3]| {
+        let lanes = evaluator.eval(point);
+        [lanes[0][0], lanes[1][0], lanes[1][1], lanes[1][2]]
     };
     points.iter().map(value).collect()
 }
 
-/// Points that are spread evenly in a square around the origin.
-fn points(reach: f64) -> Vec<[f64; 2]> {
-    let steps = [0.754_877_666_246_693, 0.569_840_290_998_053];
+/// Points that are spread evenly in a cube around the origin.
+fn points(reach: f64) -> Vec<[f64; 3]> {
+    let steps = [0.754_877_666_246_693, 0.569_840_290_998_053, 0.819_172_513_396_164];
     let at = |i: u32| steps.map(|step| reach * (2.0 * (step * f64::from(i)).fract() - 1.0));
     (0..POINTS).map(at).collect()
 }
@@ -72,7 +79,7 @@ fn both_formulas_have_the_same_distance_and_gradient() {
                 let apart = apart.fold(0.0, f64::max);
                 assert!(
                     apart <= PRECISION * reach.max(1.0),
-                    "{source} at {point:?}: {short:?} by cells, {bounded:?} by runs"
+                    "{source} at {point:?}: {short:?} by the short formula, {bounded:?} by the other"
                 );
             }
         }

@@ -55,8 +55,7 @@ fn functions(
     if program.is_planar() && method.is_some() {
         return Err(Error::Planar("a function of a ray"));
     }
-    // The lists of the short formulas are long, and others have to store them.
-    let program = program.by_formulas(FormulaChoice::Bounded);
+    let program = program.by_formulas(FormulaChoice::Portable);
     let distance = program.distance.ok_or(Error::NothingDrawn)?;
     let mut program = program.guarded();
     let field = program.distance.unwrap_or(distance);

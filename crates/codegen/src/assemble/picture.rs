@@ -153,8 +153,7 @@ fn link_benchmark(
 pub fn picture_module(program: &Program, options: &PictureOptions) -> Result<Shader, Error> {
     check_prefix(&options.prefix)?;
     let method = options.method.definition();
-    // The lists of the short formulas are long, and others have to store them.
-    let program = &program.by_formulas(FormulaChoice::Bounded).guarded();
+    let program = &program.by_formulas(FormulaChoice::Portable).guarded();
     let form = match options.stage {
         Stage::Compute => Form::Compute,
         Stage::Fragment if options.rows_up => Form::FragmentUp,

@@ -28,7 +28,7 @@ const SET_BY_CAMERA: [&str; 5] = ["forward", "right", "up", "pixel_radius", "siz
 ///
 /// As [`crate::render_module`]; [`Error::ViewBytes`].
 pub fn shadertoy_module(program: &Program, method: Method, view: &[u8]) -> Result<Shader, Error> {
-    let program = &program.by_formulas(FormulaChoice::Bounded).guarded();
+    let program = &program.by_formulas(FormulaChoice::Portable).guarded();
     let mut picture = PictureLinker::new(
         program,
         Form::Shadertoy,

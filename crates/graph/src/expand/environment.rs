@@ -2,6 +2,7 @@
 
 use rustc_hash::FxHashMap;
 
+use crate::graph::Graph;
 use crate::node::NodeId;
 
 /// A handle to a list of points, outermost first.
@@ -13,6 +14,7 @@ struct Entry {
     outer: Env,
     point: NodeId,
     depth: u16,
+    loops: u8,
 }
 
 /// All lists in use. Each extends another list by one point.
@@ -34,16 +36,23 @@ impl Environments {
         self.entry(env).map_or(0, |entry| entry.depth)
     }
 
-    pub(super) fn of(&mut self, points: &[NodeId]) -> Env {
-        points.iter().fold(EMPTY, |outer, &point| self.push(outer, point))
+    /// The number of loops around formulas that see these points: their loops are nested in those
+    /// that the points depend on.
+    pub(super) fn loops(&self, env: Env) -> u8 {
+        self.entry(env).map_or(0, |entry| entry.loops)
     }
 
-    pub(super) fn push(&mut self, outer: Env, point: NodeId) -> Env {
+    pub(super) fn of(&mut self, graph: &Graph, points: &[NodeId]) -> Env {
+        points.iter().fold(EMPTY, |outer, &point| self.push(graph, outer, point))
+    }
+
+    pub(super) fn push(&mut self, graph: &Graph, outer: Env, point: NodeId) -> Env {
         if let Some(&env) = self.known.get(&(outer, point)) {
             return env;
         }
         let depth = self.depth(outer).saturating_add(1);
-        self.entries.push(Entry { outer, point, depth });
+        let loops = self.loops(outer).max(graph.next_loop_depth(point));
+        self.entries.push(Entry { outer, point, depth, loops });
         let env = Env(self.entries.len() as u32);
         self.known.insert((outer, point), env);
         env

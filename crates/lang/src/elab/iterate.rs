@@ -3,9 +3,9 @@
 //! In materials, short loops with large bodies stay loops, too.
 //!
 //! A loop of the graph needs a body that is the same in each iteration. The body is elaborated once
-//! over variables. If that fails, because it needs constants or builds or samples shapes that
-//! differ between iterations, the loop is unrolled. A loop that does not depend on a point is
-//! unrolled too: it is computed at compile time or per frame.
+//! over variables. If that fails, because it needs constants or builds shapes that differ between
+//! iterations, the loop is unrolled. A loop that does not depend on a point is unrolled too: it is
+//! computed at compile time or per frame.
 
 use sdfc_diagnostics::{Code as ErrorCode, Diagnostic, Span};
 use sdfc_graph::{Const, Loop, LoopVar, MAX_LOOP_DEPTH, Node, NodeId, Stage, Table, reachable};
@@ -165,16 +165,23 @@ impl<'p> Elaborator<'p> {
         roots.extend(condition);
         let bit = 1 << depth;
         let differs = |&id: &NodeId| {
-            let is_shape = matches!(self.graph.node(id), Node::Sample(..) | Node::MaterialAt(..));
-            is_shape && self.graph.loops_around(id) & bit != 0
+            let is_built_here = match self.graph.node(id) {
+                Node::Sample(shape, _) => {
+                    self.graph.loops_around(self.graph.shape(shape).formula) != 0
+                }
+                node => matches!(node, Node::MaterialAt(..)),
+            };
+            is_built_here && self.graph.loops_around(id) & bit != 0
         };
+        let nesting = roots.iter().map(|&root| self.graph.loop_nesting(root)).max();
+        let is_deep = nesting.is_some_and(|nesting| nesting > MAX_LOOP_DEPTH);
         let nodes = reachable(&self.graph, &roots);
         let is_outside = |&&id: &&NodeId| self.graph.loops_around(id) & bit == 0;
         let operations = nodes.len() - nodes.iter().filter(is_outside).count();
         let mut read = nodes.iter().filter(is_outside).chain(&init);
         let at_points = read.any(|&id| self.graph.stage(id) == Stage::Point);
         let is_small = operations.saturating_mul(iterations.items.len()) <= least;
-        if nodes.iter().any(differs) || !at_points || is_small {
+        if nodes.iter().any(differs) || is_deep || !at_points || is_small {
             self.take_back(before);
             return Ok(None);
         }
