@@ -26,7 +26,10 @@ pub enum Error {
     #[error("`{0}` cannot start a name: expected letters, digits and single `_`, no digit first")]
     BadPrefix(String),
     /// A constant is not a number, or beyond the range of f32.
-    #[error("node {} is {value}, which 32-bit floats cannot hold", .node.index())]
+    #[error(
+        "the scene computes with the number {value:e}, but shaders have 32-bit floats, which end at \
+         3.4e38: use smaller lengths and numbers"
+    )]
     NotFinite {
         /// The constant.
         node: NodeId,
@@ -49,9 +52,6 @@ pub enum Error {
     /// A vector component is beyond the vector's width.
     #[error("node {} takes a component that its vector lacks", .0.index())]
     BadLane(NodeId),
-    /// The lanes of constant limits are not in the same order.
-    #[error("node {} has limits that ascend in some lanes only", .0.index())]
-    MixedLimits(NodeId),
     /// The target's language lacks something.
     #[error("{} has no {what}", .target.name())]
     Unsupported {
@@ -106,7 +106,6 @@ impl Error {
             | Self::UnboundInput(_)
             | Self::IllTyped(_)
             | Self::BadLane(_)
-            | Self::MixedLimits(_)
             | Self::ViewBytes { .. }
             | Self::Naga(_) => false,
         }

@@ -158,26 +158,52 @@ impl Lowering<'_> {
             Ternary::Mix => self.call3(MathFunction::Mix, arguments),
             Ternary::Clamp => match self.limits(b, c) {
                 Limits::Ascending => self.call3(MathFunction::Clamp, arguments),
-                Limits::Equal | Limits::Descending | Limits::Mixed => {
+                Limits::Equal | Limits::Descending | Limits::Unknown => {
                     let (x, low, high) = (self.value(a)?, self.value(b)?, self.value(c)?);
                     let raised = self.body.call2(MathFunction::Max, x, low);
                     Ok(self.body.call2(MathFunction::Min, raised, high))
                 }
             },
-            Ternary::Smoothstep => match self.limits(a, b) {
-                Limits::Ascending => self.call3(MathFunction::SmoothStep, arguments),
-                Limits::Equal => {
-                    let (edge, x) = (self.value(a)?, self.value(c)?);
-                    Ok(self.body.call2(MathFunction::Step, edge, x))
-                }
-                Limits::Descending => {
-                    let rising = self.call3(MathFunction::SmoothStep, [b, a, c])?;
-                    let one = self.splat(third, 1.0);
-                    Ok(self.body.binary(BinaryOperator::Subtract, one, rising))
-                }
-                Limits::Mixed => Err(Error::MixedLimits(id)),
-            },
+            Ternary::Smoothstep => self.smoothstep(third, arguments),
         }
+    }
+
+    fn smoothstep(&mut self, ty: Type, [from, to, x]: [NodeId; 3]) -> Result<Value, Error> {
+        match self.limits(from, to) {
+            Limits::Ascending => self.call3(MathFunction::SmoothStep, [from, to, x]),
+            Limits::Equal => {
+                let (edge, x) = (self.value(from)?, self.value(x)?);
+                Ok(self.body.call2(MathFunction::Step, edge, x))
+            }
+            Limits::Descending => {
+                let rising = self.call3(MathFunction::SmoothStep, [to, from, x])?;
+                let one = self.splat(ty, 1.0);
+                Ok(self.body.binary(BinaryOperator::Subtract, one, rising))
+            }
+            Limits::Unknown => {
+                let values = [self.value(from)?, self.value(to)?, self.value(x)?];
+                Ok(self.smoothstep_of_any_limits(ty, values))
+            }
+        }
+    }
+
+    /// `t * t * (3 - 2 * t)` for `t = saturate((x - from) / (to - from))`; where both limits are
+    /// equal, t is the step there.
+    fn smoothstep_of_any_limits(&mut self, ty: Type, [from, to, x]: [Value; 3]) -> Value {
+        let (two, three) = (self.splat(ty, 2.0), self.splat(ty, 3.0));
+        let body = &mut self.body;
+        let past = body.binary(BinaryOperator::Subtract, x, from);
+        let width = body.binary(BinaryOperator::Subtract, to, from);
+        let quotient = body.binary(BinaryOperator::Divide, past, width);
+        let reject = body.call1(MathFunction::Saturate, quotient);
+        let accept = body.call2(MathFunction::Step, from, x);
+        let condition = body.binary(BinaryOperator::Equal, from, to);
+        let select = Expression::Select { condition, accept, reject };
+        let t = body.compute(select, &[condition, accept, reject]);
+        let double = body.binary(BinaryOperator::Multiply, two, t);
+        let rest = body.binary(BinaryOperator::Subtract, three, double);
+        let square = body.binary(BinaryOperator::Multiply, t, t);
+        body.binary(BinaryOperator::Multiply, square, rest)
     }
 
     fn call3(&mut self, fun: MathFunction, [a, b, c]: [NodeId; 3]) -> Result<Value, Error> {
@@ -194,12 +220,15 @@ impl Lowering<'_> {
         }
     }
 
-    /// The order of two limits, as f32. Limits that are not both constant are assumed to ascend.
+    /// The order of two limits, as f32.
     fn limits(&self, low: NodeId, high: NodeId) -> Limits {
-        let (Node::Const(low), Node::Const(high)) =
-            (self.program.graph.node(low), self.program.graph.node(high))
-        else {
-            return Limits::Ascending;
+        let graph = &self.program.graph;
+        let (Node::Const(low), Node::Const(high)) = (graph.node(low), graph.node(high)) else {
+            let (low, high) = (graph.range(low), graph.range(high));
+            return match (low.hi as f32) < (high.lo as f32) {
+                true => Limits::Ascending,
+                false => Limits::Unknown,
+            };
         };
         let pairs = low.lanes().into_iter().zip(high.lanes()).take(low.ty().width());
         let pairs: Vec<_> = pairs.map(|(low, high)| (low as f32, high as f32)).collect();
@@ -210,18 +239,19 @@ impl Lowering<'_> {
         } else if pairs.iter().all(|(low, high)| low == high) {
             Limits::Equal
         } else {
-            Limits::Mixed
+            Limits::Unknown
         }
     }
 }
 
-/// The order of the lanes of a lower and an upper limit. WGSL refuses constant limits of `clamp`
-/// and `smoothstep` that are out of order.
+/// The order of a lower and an upper limit. WGSL refuses constant limits of `clamp` and
+/// `smoothstep` that are out of order, and does not define the result of others.
 enum Limits {
     Ascending,
     Equal,
     Descending,
-    Mixed,
+    /// The order depends on the lane, or on values of the frame or the point.
+    Unknown,
 }
 
 /// Returns true if an operation takes arguments of a type.
