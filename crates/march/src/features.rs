@@ -164,7 +164,7 @@ impl Features {
     pub fn unused(self) -> Vec<&'static str> {
         let calls = [
             (stubs::RECORD_SAMPLE, self.soft_shadows),
-            (stubs::RECORD_SLOPE, self.occlusion),
+            (stubs::RECORD_SLOPE, self.occlusion || self.soft_shadows),
             (stubs::RECORD_GAP, self.records_gaps),
             (stubs::LIMIT_LOOPS, self.loops),
         ];

@@ -82,7 +82,7 @@ impl Pass<'_> {
         let constant = quality.lipschitz.clone();
         // A field that never exceeds the distance needs no constant.
         let is_bound = constant.is_err() && quality.sides.is_bound();
-        if everywhere && (is_bound || self.is_at_most_one(&constant)) {
+        if is_bound || everywhere && self.is_at_most_one(&constant) {
             return self.expander.field_under(self.graph, shape, outer, point);
         }
         let level = usize::from(self.graph.shape(shape).level).min(outer.len());

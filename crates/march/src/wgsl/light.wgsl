@@ -5,6 +5,8 @@ struct IncomingLight {
     direction: vec3f,
     // Distance to the light; for a sun, the length of rays.
     distance: f32,
+    // The inverse of the distance to the light; 0 for a sun.
+    inverse_distance: f32,
     // Linear colour of the light that arrives.
     color: vec3f,
 }
@@ -13,7 +15,7 @@ struct IncomingLight {
 const MIN_SQUARE: f32 = 1e-12;
 
 fn light_at(light: Light, point: vec3f) -> IncomingLight {
-    var incoming = IncomingLight(light.position, view.t_max, light.color);
+    var incoming = IncomingLight(light.position, view.t_max, 0.0, light.color);
     if POSITIONAL_LIGHTS {
         if light.kind != SUN {
             let offset = light.position - point;
@@ -21,6 +23,7 @@ fn light_at(light: Light, point: vec3f) -> IncomingLight {
             let inverse_distance = inverseSqrt(square);
             incoming.direction = inverse_distance * offset;
             incoming.distance = inverse_distance * square;
+            incoming.inverse_distance = inverse_distance;
             incoming.color *= 1.0 / square;
             if SPOT_LIGHTS {
                 if light.kind == SPOT {

@@ -14,6 +14,16 @@ fn record_slope(square: f32) {
     slope = select(1.0, sqrt(square), square > 0.0);
 }
 
+// How much the field falls behind the distance near the last surface: the slope there, if that is
+// flatter than a distance. An estimate of the distance needs no correction.
+fn flatness() -> f32 {
+    var flatness = select(1.0, slope, slope < STEEP);
+    if ESTIMATED {
+        flatness = 1.0;
+    }
+    return flatness;
+}
+
 fn unoccluded_fraction(point: vec3f, normal: vec3f) -> f32 {
     if CULLED {
         // Parts that do not affect a camera ray may still be near.

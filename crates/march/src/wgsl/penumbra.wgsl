@@ -7,10 +7,15 @@
 // A field that is divided by a Lipschitz constant is flatter than a distance, and shadows would be
 // darker and wider. The position of the least ratio remains, so the ratio is taken from an estimate
 // of the distance there.
+//
+// A light with a place is a point, so the cone of its penumbra closes there again. Otherwise a lamp
+// would be in the shadow of the ceiling above it, and of its own shade.
 
 // True if the current ray leads to a light with a soft shadow.
 var<private> records_clearance: bool;
-// The least ratio of the distance from the ray to the distance along it, and where it is.
+// The inverse of the distance to the light; 0 for a sun.
+var<private> inverse_light_distance: f32;
+// The least ratio of the distance from the ray to the cone's width, and where it is.
 var<private> clearance: f32;
 var<private> closest: f32;
 // The last sample, as (t, distance).
@@ -29,9 +34,19 @@ fn limited_step(stride: f32, distance: f32) -> f32 {
 }
 
 // Call before tracing a ray towards a light.
-fn start_penumbra() {
+fn start_penumbra(light: IncomingLight) {
     clearance = 1e30;
     last_sample = vec2f();
+    inverse_light_distance = light.inverse_distance;
+}
+
+// The width of the cone at a position of the ray, for a sharpness of 1.
+fn cone_width(t: f32) -> f32 {
+    var width = t;
+    if POSITIONAL_LIGHTS {
+        width *= 1.0 - t * inverse_light_distance;
+    }
+    return width;
 }
 
 // Methods call this after each sample of a ray.
@@ -47,13 +62,14 @@ fn record_sample(t: f32, distance: f32) {
         } else if back >= step {
             nearest = last_sample;
         }
-        if nearest.x > 0.0 {
+        let width = cone_width(nearest.x);
+        if width > 0.0 {
             if ESTIMATED {
-                if nearest.y / nearest.x < clearance {
+                if nearest.y / width < clearance {
                     closest = nearest.x;
                 }
             }
-            clearance = min(clearance, nearest.y / nearest.x);
+            clearance = min(clearance, nearest.y / width);
         }
     }
     last_sample = vec2f(t, distance);
@@ -69,6 +85,6 @@ fn field_estimate(p: vec3f) -> f32 {
 // Call after tracing a ray towards a light.
 fn estimate_clearance(ray: Ray) {
     if records_clearance && clearance < 1e30 {
-        clearance = max(clearance, field_estimate(ray_point(ray, closest)) / closest);
+        clearance = max(clearance, field_estimate(ray_point(ray, closest)) / cone_width(closest));
     }
 }

@@ -61,7 +61,7 @@ fn light_visibility(light: Light, found: Trace) -> f32 {
     var fraction = 1.0;
     if SOFT_SHADOWS {
         if light.shadow == SHADOW_SOFT {
-            fraction = smoothstep(0.0, 1.0, light.sharpness * clearance);
+            fraction = smoothstep(0.0, 1.0, light.sharpness * clearance / flatness());
         }
     }
     return select(fraction, 0.0, found.status == HIT);

@@ -243,6 +243,7 @@ impl CpuScene {
                 epsilon: T::constant(view.epsilon),
                 steps: view.steps,
                 records_clearance: false,
+                ends_at_light: false,
                 ends_unproven: false,
                 is_loose: self.is_loose,
             },

@@ -85,6 +85,12 @@ struct Walk<T> {
     unproven: bool,
 }
 
+/// The width of a penumbra's cone at a position of a ray, for a sharpness of 1. A light with a place
+/// is a point, so the cone closes there.
+pub(super) fn cone_width<T: Real>(ray: &Ray<T>, along: T, ends_at_light: bool) -> T {
+    if ends_at_light { along * (T::constant(1.0) - along.div(ray.t_max)) } else { along }
+}
+
 /// The decision after a sample or bounds of the field.
 enum Next<T> {
     At(T),
@@ -150,7 +156,7 @@ impl<T: Real> Walk<T> {
     ) -> Option<Trace<'static, T>> {
         self.evaluations += limits.method.evaluations_per_sample();
         if limits.records_clearance {
-            self.record_clearance(distance);
+            self.record_clearance(distance, limits.ends_at_light);
         }
         let next = match limits.method {
             CpuMethod::Sphere if distance < limits.epsilon => Next::Hit(self.t),
@@ -203,7 +209,7 @@ impl<T: Real> Walk<T> {
     /// of spheres; they intersect in a circle around the ray, whose radius is taken for the
     /// distance of what lies there, if it lies between. Spheres that do not intersect tell nothing
     /// of what is between them.
-    fn record_clearance(&mut self, here: T) {
+    fn record_clearance(&mut self, here: T, ends_at_light: bool) {
         let ((last, before), zero) = (self.before, T::constant(0.0));
         self.before = (self.t, here);
         let step = self.t - last;
@@ -214,8 +220,9 @@ impl<T: Real> Walk<T> {
                 back if back >= step => (last, before),
                 back => (self.t - back, (here * here - back * back).max(zero).sqrt()),
             };
-            if along > zero {
-                let ratio = aside.div(along);
+            let width = cone_width(&self.whole, along, ends_at_light);
+            if width > zero {
+                let ratio = aside.div(width);
                 if ratio < self.clearance {
                     (self.clearance, self.closest) = (ratio, along);
                 }

@@ -13,10 +13,10 @@ use super::ray::{Batch, LANES, Ray, Real, packed_from, surface_values};
 use super::shade::{Paint, Surface};
 use super::surroundings::{IncomingLight, background_color, clear_fraction, light_visibility};
 use super::trace::copies::trace_among_copies;
-use super::trace::{Limits, Trace, trace};
+use super::trace::{Limits, Trace, cone_width, trace};
 use crate::image::HIT;
 use crate::view::footprint::Footprint;
-use crate::view::{Background, View, ViewFog, ViewLight, ViewOcclusion, ViewShadow};
+use crate::view::{Background, View, ViewFog, ViewLight, ViewOcclusion, ViewShadow, ViewSource};
 
 /// The number of samples above a surface for ambient occlusion.
 const OCCLUSION_SAMPLES: u32 = 5;
@@ -93,7 +93,7 @@ impl<T: Real> Pixels for Wave<'_, T> {
     fn pixels(&mut self, positions: &[[u32; 2]]) -> Vec<PixelBlock> {
         let rays: Vec<Ray<T>> =
             positions.iter().map(|position| self.camera_ray(*position)).collect();
-        let primary = self.traces(&rays, false);
+        let primary = self.traces(&rays, self.limits);
         let mut shades = vec![Shade::default(); positions.len()];
         let camera_ray =
             |pixel: usize| ViewRay { pixel, ray: rays[pixel], weight: DVec3::ONE, blur: 0.0 };
@@ -106,7 +106,7 @@ impl<T: Real> Pixels for Wave<'_, T> {
             let view_rays: Vec<ViewRay<T>> =
                 hits.iter().map(|hit| self.reflected(hit)).filter(mirrors).collect();
             let rays: Vec<Ray<T>> = view_rays.iter().map(|view_ray| view_ray.ray).collect();
-            let traces = self.traces(&rays, false);
+            let traces = self.traces(&rays, self.limits);
             hits = self.lit_hits(|index| view_rays[index], &traces, left, &mut shades);
         }
         let pixels = primary.iter().zip(shades);
@@ -116,8 +116,8 @@ impl<T: Real> Pixels for Wave<'_, T> {
 
 impl<'a, T: Real> Wave<'a, T> {
     /// Traces rays; those that record their clearance are marched through the whole field.
-    fn traces(&mut self, rays: &[Ray<T>], records_clearance: bool) -> Vec<Trace<'a, T>> {
-        let limits = Limits { records_clearance, ..self.limits };
+    fn traces(&mut self, rays: &[Ray<T>], limits: Limits<T>) -> Vec<Trace<'a, T>> {
+        let records_clearance = limits.records_clearance;
         let Some(pre_intersection) = &mut self.pre_intersection else {
             return trace(self.field, self.range.as_mut(), rays, None, &limits);
         };
@@ -336,22 +336,34 @@ impl<'a, T: Real> Wave<'a, T> {
         let rays: Vec<Ray<T>> =
             shadowed.iter().map(|(hit, incoming, _)| self.shadow_ray(hit, incoming)).collect();
         let records_clearance = matches!(light.shadow, ViewShadow::Soft(_));
-        let mut traces = self.traces(&rays, records_clearance);
+        let ends_at_light = !matches!(light.source, ViewSource::Sun(_));
+        let limits = Limits { records_clearance, ends_at_light, ..self.limits };
+        let mut traces = self.traces(&rays, limits);
         if records_clearance {
-            self.estimate_clearances(&rays, &mut traces);
+            self.estimate_clearances(&rays, &mut traces, ends_at_light);
         }
+        let is_estimated = self.estimate.is_some();
         for ((hit, _, lit), trace) in shadowed.into_iter().zip(traces) {
             let shade = &mut shades[hit.view_ray.pixel];
             shade.count(&trace);
             if trace.status != HIT {
-                shade.color += lit * light_visibility(light, trace.clearance.into());
+                // Near a flat surface that the ray leaves, the field falls behind the distance.
+                let is_flat = !is_estimated && hit.slope < STEEP;
+                let flatness = if is_flat { hit.slope } else { 1.0 };
+                let clearance: f64 = trace.clearance.into();
+                shade.color += lit * light_visibility(light, clearance / flatness);
             }
         }
     }
 
     /// Takes the clearance of rays from an estimate of the distance where it is least: a field that
     /// is divided by a Lipschitz constant would make it too small.
-    fn estimate_clearances(&mut self, rays: &[Ray<T>], traces: &mut [Trace<'_, T>]) {
+    fn estimate_clearances(
+        &mut self,
+        rays: &[Ray<T>],
+        traces: &mut [Trace<'_, T>],
+        ends_at_light: bool,
+    ) {
         let Some(estimate) = &mut self.estimate else { return };
         let known = |index: &usize| T::constant(0.0) < traces[*index].closest;
         let indices: Vec<usize> = (0..traces.len()).filter(known).collect();
@@ -360,7 +372,8 @@ impl<'a, T: Real> Wave<'a, T> {
             let Packet(distances) = estimate.scalar(packed_from(points));
             for (&index, distance) in group.iter().zip(distances) {
                 let Trace { clearance, closest, .. } = &mut traces[index];
-                *clearance = clearance.max(distance.div(*closest));
+                let width = cone_width(&rays[index], *closest, ends_at_light);
+                *clearance = clearance.max(distance.div(width));
             }
         }
     }

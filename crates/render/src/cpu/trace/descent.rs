@@ -41,7 +41,7 @@ pub(super) fn descend<'c, T: Real>(
         for index in (0..rays.len()).filter(|&index| !cells.surround(&rays[index])) {
             group.leave_undecided(index);
         }
-        sample_starts(cells, &mut group, limits);
+        sample_starts(cells, &mut group);
         for octant in group.octants() {
             let bounds = group.choose(octant);
             let mut descent = Descent {
@@ -64,8 +64,8 @@ pub(super) fn descend<'c, T: Real>(
     traces
 }
 
-/// Ends rays that start in a surface, or where the field is undefined: bounds do not tell this.
-fn sample_starts<T: Real>(cells: &Cells<'_>, group: &mut Group<'_, '_, T>, limits: &Limits<T>) {
+/// Ends rays that start inside, or where the field is undefined: bounds do not tell this.
+fn sample_starts<T: Real>(cells: &Cells<'_>, group: &mut Group<'_, '_, T>) {
     let zero = T::constant(0.0);
     // Camera rays often have one origin.
     let (mut points, mut starts) = (Vec::new(), Vec::with_capacity(group.len()));
@@ -79,11 +79,9 @@ fn sample_starts<T: Real>(cells: &Cells<'_>, group: &mut Group<'_, '_, T>, limit
     let values = cells.values(&points);
     for (index, point) in starts {
         group.traces[index].evaluations += 1;
-        let near = limits.hit_within(&group.ray(index), zero);
-        let limit = if limits.is_loose { zero } else { near };
         if values[point].is_nan() {
             group.finish(index, T::constant(f64::NAN), MISS, None);
-        } else if values[point] < limit.into() {
+        } else if values[point] < 0.0 {
             group.finish(index, zero, HIT, None);
         }
     }

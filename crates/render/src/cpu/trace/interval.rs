@@ -35,10 +35,9 @@ impl<T: Real> Walk<T> {
     ) -> Next<T> {
         let zero = T::constant(0.0);
         let is_first = self.outside.is_none() && self.inside.is_none();
-        // A ray may start in a surface, but where it enters a cell it has passed none.
-        let near_start = self.hit_within(limits.tolerance(&self.ray, zero));
-        let limit = if self.t > zero { zero } else { near_start };
-        if is_first && distance < limit {
+        // A ray that starts inside hits at its origin. A small value outside is none: the field may
+        // be flat there.
+        if is_first && distance < zero {
             self.evaluations = 1;
             return Next::Hit(self.t);
         }
