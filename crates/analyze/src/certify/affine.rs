@@ -17,7 +17,7 @@ const ZERO: Coefficient = Coefficient::ZERO;
 /// The coefficients of x, y and z in one lane.
 type Row = [Coefficient; 3];
 
-/// The linear lane of an affine node, one row for each lane.
+/// The linear part of an affine node, one row for each lane.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Linear {
     rows: [Row; 4],
@@ -57,7 +57,7 @@ impl Linear {
     }
 }
 
-/// The linear lane of a node as a map of the point of `level`, between the jumps of `floor`, `sign`
+/// The linear part of a node as a map of the point of `level`, between the jumps of `floor`, `sign`
 /// and the like, which count as constant. Returns `None` if the node is not affine there.
 pub(crate) fn linear_between_jumps(graph: &mut Graph, root: NodeId, level: u16) -> Option<Linear> {
     let mut known: FxHashMap<NodeId, Option<Box<Linear>>> = FxHashMap::default();
@@ -90,7 +90,7 @@ fn is_piecewise_constant(node: Node) -> bool {
     )
 }
 
-/// The linear lane of a node that depends on the point of `level`. `known` holds the linear lanes
+/// The linear part of a node that depends on the point of `level`. `known` holds the linear parts
 /// of those of its arguments that do. Returns `None` if the node is not affine.
 pub(crate) fn linear_part(
     graph: &mut Graph,
@@ -222,7 +222,7 @@ fn weighted_sum(graph: &mut Graph, rows: &[Row], weights: &[Coefficient]) -> Row
     })
 }
 
-/// Applies the linear lane of a map to a vector.
+/// Applies the linear part of a map to a vector.
 pub(crate) fn applied(graph: &mut Graph, linear: &Linear, vector: NodeId) -> NodeId {
     if linear.is_identity() {
         return vector;

@@ -60,7 +60,7 @@ pub enum Clause {
     },
     /// `bounds`.
     Bounds,
-    /// `hits`.
+    /// `intersect`.
     Intersect(RayViolation),
     /// `copies`.
     Copies(CopiesViolation),

@@ -84,7 +84,7 @@ fn field(graph: &mut Graph, shape: ShapeId) -> Option<Tape> {
     Tape::new(graph, &[field]).ok()
 }
 
-/// A tape up a point p and an offset: the field at p + offset, the minimum there of the samples at
+/// A tape of a point p and an offset: the field at p + offset, the minimum there of the samples at
 /// p, and the radius of the ball around p.
 fn ball_tape(graph: &mut Graph, shape: ShapeId) -> Option<Tape> {
     let copies = split_copies(graph, shape).ok()?;

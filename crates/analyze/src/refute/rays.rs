@@ -72,13 +72,13 @@ pub(super) fn intersect_violation<N: Number + Into<f64>>(
     let distance = expander.field(graph, shape, rays[0]).ok()?;
     let ends: Option<Vec<NodeId>> =
         stated.as_flattened().iter().map(|&end| expander.node(graph, end, &rays).ok()).collect();
-    let (field, hits) = (Tape::new(graph, &[distance]).ok()?, Tape::for_rays(graph, &ends?).ok()?);
-    let ends = sdfc_graph::eval::evaluate_frame(graph, &corners, frame);
-    let window = [0, 1].map(|end| [0, 1, 2].map(|axis| cut(ends[end][axis], end)));
+    let (field, ends) = (Tape::new(graph, &[distance]).ok()?, Tape::for_rays(graph, &ends?).ok()?);
+    let corners = sdfc_graph::eval::evaluate_frame(graph, &corners, frame);
+    let window = [0, 1].map(|end| [0, 1, 2].map(|axis| cut(corners[end][axis], end)));
     let size = (0..3).map(|axis| window[1][axis] - window[0][axis]).fold(0.0, f64::max);
     let mut sampler = Sampler {
         exact: field.prepare(frame),
-        hits: hits.prepare::<N>(frame),
+        ends: ends.prepare::<N>(frame),
         random: Random(1),
         window,
         size: size.max(1e-3),
@@ -97,7 +97,8 @@ fn cut(end: f64, side: usize) -> f64 {
 /// The field and the intervals of a shape, and the rays to sample.
 struct Sampler<'t, N> {
     exact: Evaluator<'t, f64>,
-    hits: Evaluator<'t, N>,
+    /// The ends of the stated intervals.
+    ends: Evaluator<'t, N>,
     random: Random,
     window: [[f64; 3]; 2],
     size: f64,
@@ -146,7 +147,7 @@ impl<N: Number + Into<f64>> Sampler<'_, N> {
     /// test fails.
     fn intervals(&mut self, ray: [[f64; 3]; 2]) -> Vec<[f64; 2]> {
         let [origin, direction] = ray.map(|vector| vector.map(N::constant));
-        let ends = self.hits.eval_ray(origin, direction);
+        let ends = self.ends.eval_ray(origin, direction);
         let intervals = ends.chunks_exact(2).map(|pair| [pair[0][0].into(), pair[1][0].into()]);
         let is_empty = |interval: &[f64; 2]| interval[0] > interval[1];
         intervals.filter(|interval| !is_empty(interval)).collect()

@@ -1,4 +1,4 @@
-//! The values of each node range which a surface may lie.
+//! The values of each node around which a surface may lie.
 
 use sdfc_graph::{
     Binary, Blends, Graph, IdMap, Node, NodeId, Stage, Ternary, Type, Unary, blend_at, reachable,

@@ -20,8 +20,7 @@ pub(super) struct Step {
     pub(super) before: NodeId,
     /// The operand that this step adds.
     pub(super) operand: NodeId,
-    /// The width of the blend: it equals the minimum where its operands differ by at min_chain
-    /// this.
+    /// The width of the blend: it equals the minimum where its operands differ by at least this.
     pub(super) width: NodeId,
 }
 

@@ -9,8 +9,8 @@
 //!
 //! The operations between a loop and the root change the margin: the surface of `loop - r` is where
 //! the loop has the value r, and a blend of width k uses values of up to [`WIDTHS`] k.
-//! `active_range` follows the values range the surface from the root down to the loops. Loops below
-//! any other operation run all of their iterations.
+//! `active_range` follows the values around the surface from the root down to the loops. Loops
+//! below any other operation run all of their iterations.
 
 use sdfc_graph::{CullableLoop, Graph, Node, NodeId, SkipCondition, reachable};
 

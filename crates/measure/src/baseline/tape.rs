@@ -56,7 +56,7 @@ struct Instruction {
     reversed: bool,
 }
 
-/// The operand operand of an instruction, or its only one if it takes none from the stack.
+/// The second operand of an instruction, or its only one if it takes none from the stack.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Operand {
     Stack,
@@ -123,7 +123,7 @@ impl<'a> Encoder<'a> {
     }
 
     /// Returns the number of stack entries that a value needs while it is computed. A constant or a
-    /// local needs none as a operand operand.
+    /// local needs none as a second operand.
     fn stack_size(&self, id: NodeId) -> usize {
         let is_available = self.constants.contains_key(&id) || self.locals.contains_key(&id);
         if is_available { 0 } else { self.stack_sizes.get(&id).copied().unwrap_or(1) }
