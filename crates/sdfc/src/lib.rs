@@ -102,7 +102,7 @@ pub use marched::Marched;
 pub use measure::MeasureOptions;
 #[cfg(feature = "mesh")]
 pub use mesh::{MeshOptions, MeshSize};
-pub use params::{ParamError, Value};
+pub use params::{ParamError, Value, degrees};
 #[cfg(feature = "render")]
 pub use picture::{Backend, Painter, Picture, PictureOptions};
 pub use reflection::{

@@ -167,7 +167,7 @@ impl Scene {
             let [number, ..] = param.fixed?;
             let value = match param.kind {
                 ParamKind::Number | ParamKind::Int => number.to_string(),
-                ParamKind::Angle => degrees(number),
+                ParamKind::Angle => in_degrees(number),
                 ParamKind::Bool => (number != 0.0).to_string(),
                 ParamKind::Color => format!("{:?}", param.fixed?),
                 ParamKind::Choice => param.choices.get(number as usize)?.clone(),
@@ -379,7 +379,7 @@ fn expected(param: &Param) -> String {
 /// Returns a range as a scene writes it.
 fn range(kind: ParamKind, ends: [f64; 2]) -> String {
     let [lo, hi] = ends.map(|end| match kind {
-        ParamKind::Angle => degrees(end),
+        ParamKind::Angle => in_degrees(end),
         ParamKind::Number
         | ParamKind::Int
         | ParamKind::Bool
@@ -389,9 +389,20 @@ fn range(kind: ParamKind, ends: [f64; 2]) -> String {
     format!("{lo}..{hi}")
 }
 
-/// Returns an angle in degrees, without the rounding of the conversion from degrees and back.
-fn degrees(radians: f64) -> String {
-    format!("{}deg", (radians.to_degrees() * 1e9).round() / 1e9)
+/// Returns an angle as a scene writes it.
+fn in_degrees(radians: f64) -> String {
+    format!("{}deg", degrees(radians))
+}
+
+/// Returns an angle in degrees, without the rounding error of the conversion from degrees and back.
+///
+/// ```
+/// let radians = 15f64.to_radians();
+/// assert_ne!(radians.to_degrees(), 15.0);
+/// assert_eq!(sdfc::degrees(radians), 15.0);
+/// ```
+pub fn degrees(radians: f64) -> f64 {
+    (radians.to_degrees() * 1e9).round() / 1e9
 }
 
 #[cfg(test)]

@@ -4,6 +4,7 @@ use std::ops::ControlFlow;
 
 use sdfc::{
     Compiler, Error, FrameValues, Painter, Param, ParamKind, Picture, PictureOptions, Pose, Scene,
+    degrees,
 };
 use sdfc_lsp::{
     Answer, Ask, Draw, ParamInfo, ParamValue, Preview, PreviewCamera, PreviewLens, PreviewOptions,
@@ -168,11 +169,6 @@ fn param(param: &Param) -> ParamInfo {
     let angle = param.kind == ParamKind::Angle;
     let range = param.range.map(|range| if angle { range.map(degrees) } else { range });
     ParamInfo { name: param.name.clone(), kind, default, range, choices: param.choices.clone() }
-}
-
-/// Degrees, without the rounding of the conversion there and back.
-fn degrees(radians: f64) -> f64 {
-    (radians.to_degrees() * 1e9).round() / 1e9
 }
 
 /// A colour as a scene writes it.
