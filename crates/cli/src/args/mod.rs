@@ -9,7 +9,7 @@ mod values;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
-use clap::{Parser, Subcommand, ValueEnum};
+use clap::{Arg, CommandFactory, Parser, Subcommand, ValueEnum};
 
 pub use compile::Compile;
 pub use geometry::{Bake, Contour, Exactness, Measure, Mesh};
@@ -212,23 +212,52 @@ pub struct Doc {
 }
 
 /// Returns the arguments of the process with the default command, `render`, before a scene that
-/// stands in place of a command.
+/// stands in place of a command. Options of `render` may precede the scene.
 pub fn with_command(args: impl IntoIterator<Item = OsString>) -> Vec<OsString> {
     let mut args: Vec<OsString> = args.into_iter().collect();
-    let is_option = |arg: &OsString| arg.as_encoded_bytes().starts_with(b"-");
-    let first = args.iter().skip(1).position(|arg| !is_option(arg));
-    if let Some(at) = first
-        && Path::new(&args[at + 1]).extension().is_some_and(|extension| extension == "sdf")
-    {
+    let is_scene = |word: &OsString| Path::new(word).extension().is_some_and(|it| it == "sdf");
+    if first_word(&args).is_some_and(is_scene) {
         args.insert(1, "render".into());
     }
     args
 }
 
+/// Returns the first argument that is neither an option nor the value of an option of `render`.
+fn first_word(args: &[OsString]) -> Option<&OsString> {
+    let command = Args::command();
+    let commands = [Some(&command), command.find_subcommand("render")];
+    let options: Vec<&Arg> =
+        commands.into_iter().flatten().flat_map(|command| command.get_arguments()).collect();
+    let mut words = args.iter().skip(1);
+    while let Some(word) = words.next() {
+        let option = word.to_string_lossy();
+        if option == "--" {
+            return words.next();
+        }
+        if option == "-" || !option.starts_with('-') {
+            return Some(word);
+        }
+        if is_before_value(&options, &option) {
+            words.next();
+        }
+    }
+    None
+}
+
+/// Returns true if the argument after this option is its value.
+fn is_before_value(options: &[&Arg], option: &str) -> bool {
+    let mut with_value = options.iter().filter(|known| known.get_action().takes_values());
+    if let Some(name) = option.strip_prefix("--") {
+        return with_value.any(|known| known.get_long() == Some(name));
+    }
+    // Of several letters, the first that takes a value takes the rest of the word.
+    let shorts: Vec<char> = with_value.filter_map(|known| known.get_short()).collect();
+    let mut letters = option.chars().skip(1);
+    letters.any(|letter| shorts.contains(&letter)) && letters.next().is_none()
+}
+
 #[cfg(test)]
 mod tests {
-    use clap::CommandFactory;
-
     use super::*;
 
     #[test]
@@ -242,10 +271,45 @@ mod tests {
             let args = with_command(line.split(' ').map(OsString::from));
             args.join(std::ffi::OsStr::new(" ")).into_string().unwrap()
         };
-        assert_eq!(with("sdfc a.sdf"), "sdfc render a.sdf");
-        assert_eq!(with("sdfc -q a.sdf --size 2x2"), "sdfc render -q a.sdf --size 2x2");
-        for line in ["sdfc", "sdfc check a.sdf", "sdfc --help", "sdfc a.png", "sdfc view a.sdf"] {
+        for options in [
+            "",
+            "-q ",
+            "--color never ",
+            "--color=never ",
+            "-q --size 16x16 ",
+            "-o o.png ",
+            "-oo.png ",
+            "-qo o.png ",
+            "-o - ",
+            "--set file=b.sdf --watch ",
+            "-- ",
+        ] {
+            let line = format!("{options}a.sdf --size 2x2");
+            assert_eq!(with(&format!("sdfc {line}")), format!("sdfc render {line}"));
+        }
+        for line in [
+            "sdfc",
+            "sdfc --help",
+            "sdfc a.png",
+            "sdfc check a.sdf",
+            "sdfc view a.sdf",
+            "sdfc --color never check a.sdf",
+            "sdfc -q -- check a.sdf",
+            "sdfc -o a.sdf",
+            "sdfc -o a.sdf o.png",
+        ] {
             assert_eq!(with(line), line);
         }
+    }
+
+    #[test]
+    fn a_scene_after_options_is_parsed() {
+        let line = "sdfc --color never -qo o.png --size 16x8 a.sdf";
+        let args = with_command(line.split(' ').map(OsString::from));
+        let args = Args::try_parse_from(args).unwrap();
+        assert!(args.global.quiet && args.global.color == ColorChoice::Never);
+        let Command::Render(render) = args.command else { panic!("another command") };
+        assert_eq!((render.size, render.file), ([16, 8], PathBuf::from("a.sdf")));
+        assert_eq!(render.output, Some(PathBuf::from("o.png")));
     }
 }
