@@ -28,6 +28,17 @@ fn a_table_or_json_is_printed() {
 }
 
 #[test]
+fn measurements_of_a_small_solid_keep_their_digits() {
+    let output = run("sphere(0.001)\n", &["--error-relative", "0.01"]);
+    let text = String::from_utf8(output.stdout).unwrap();
+    for [row, digits] in [["volume ", "e-9 .. 4."], ["inertia xx ", "e-15 .. 1."], ["area ", "e-5"]]
+    {
+        let line = text.lines().find(|line| line.starts_with(row)).unwrap();
+        assert!(line.contains(digits), "{text}");
+    }
+}
+
+#[test]
 fn a_scene_without_a_limit_is_refused() {
     let output = run("plane(y: 0)\n", &[]);
     assert_eq!(output.status.code(), Some(1));

@@ -9,6 +9,9 @@ use crate::console::Console;
 use crate::failure::Failure;
 use crate::output;
 
+/// Limit of the decimals of a number, so that the power of ten is finite.
+const MAX_DECIMALS: f64 = 300.0;
+
 /// Measures a scene, and prints the result.
 ///
 /// # Errors
@@ -151,7 +154,7 @@ fn table(found: &Measurements) -> String {
     for (axes, value) in axes.into_iter().zip(found.inertia.into_iter().flatten()) {
         row(&format!("inertia {axes}"), interval(value));
     }
-    row("area", format!("about {:.4} (an estimate, not proven)", found.area_estimate));
+    row("area", format!("about {} (an estimate, not proven)", estimate(found.area_estimate)));
     if found.lowest.is_none() {
         row("inside", "not proven to exist".to_owned());
     }
@@ -160,15 +163,27 @@ fn table(found: &Measurements) -> String {
 
 /// Returns an interval in decimal numbers, rounded outwards to two digits of its width.
 fn interval([lo, hi]: Proven) -> String {
-    let decimals = (1.0 - (hi - lo).log10().floor()).clamp(0.0, 15.0);
-    let scale = 10f64.powi(decimals as i32);
-    let (below, above) = ((lo * scale).floor() / scale, (hi * scale).ceil() / scale);
-    // The division may round inwards.
-    let [below, above] = [below.min(lo), above.max(hi)];
-    match below.is_finite() && above.is_finite() {
-        true => format!("{below} .. {above}"),
-        false => format!("{lo} .. {hi}"),
-    }
+    let size = lo.abs().max(hi.abs());
+    // A number has no more than 16 digits.
+    let decimals = (1.0 - (hi - lo).log10().floor()).min(15.0 - size.log10().floor());
+    let decimals = decimals.clamp(0.0, MAX_DECIMALS) as i32;
+    let scale = 10f64.powi(decimals);
+    // A division by the scale would round: not all powers of ten are exact.
+    let unscaled = |x: f64| format!("{x}e-{decimals}").parse::<f64>();
+    let below = unscaled((lo * scale).floor()).map_or(lo, |below| below.min(lo));
+    let above = unscaled((hi * scale).ceil()).map_or(hi, |above| above.max(hi));
+    format!("{} .. {}", decimal(below), decimal(above))
+}
+
+/// Returns a number of which no more than five digits are known.
+fn estimate(value: f64) -> String {
+    decimal(format!("{value:.4e}").parse().unwrap_or(value))
+}
+
+/// Returns a number in decimal digits, with an exponent if it is tiny.
+fn decimal(value: f64) -> String {
+    let is_tiny = value != 0.0 && value.abs() < 1e-4;
+    if is_tiny { format!("{value:e}") } else { format!("{value}") }
 }
 
 #[cfg(test)]
@@ -181,5 +196,21 @@ mod tests {
         assert_eq!(interval([-0.000_123_4, 0.000_567_8]), "-0.00013 .. 0.00057");
         assert_eq!(interval([1234.56, 1300.0]), "1234 .. 1300");
         assert_eq!(interval([0.0, f64::INFINITY]), "0 .. inf");
+    }
+
+    #[test]
+    fn small_intervals_keep_their_digits() {
+        assert_eq!(interval([4.187_35e-9, 4.190_15e-9]), "4.1873e-9 .. 4.1902e-9");
+        assert_eq!(interval([1.674_45e-15, 1.675_55e-15]), "1.6744e-15 .. 1.6756e-15");
+        assert_eq!(interval([0.0, 0.0]), "0 .. 0");
+        assert_eq!(interval([1.0, 1.0]), "1 .. 1");
+    }
+
+    #[test]
+    fn estimates_have_five_digits() {
+        assert_eq!(estimate(1.256_637e-5), "1.2566e-5");
+        assert_eq!(estimate(12.566_37), "12.566");
+        assert_eq!(estimate(123_456.7), "123460");
+        assert_eq!(estimate(0.0), "0");
     }
 }
