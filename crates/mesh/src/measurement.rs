@@ -16,8 +16,8 @@ use crate::vector::longest_side;
 /// A number that is proven to lie between two others, both included.
 pub type Proven = [f64; 2];
 
-/// Measurements of a solid, in scene units. Each [`Proven`] interval holds the true value of the
-/// solid within its bounds, in spite of all rounding.
+/// Measurements of a solid, in scene units. Each [`Proven`] interval holds the true value, in spite
+/// of all rounding, if the bounds contain the solid.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct Measurements {
@@ -48,7 +48,9 @@ pub struct Measurements {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct MeasureOptions {
-    /// Lowest and highest corner of a box around the solid, in scene units.
+    /// Lowest and highest corner of a box that contains the solid, in scene units. If the solid
+    /// reaches beyond it, it is open how much of the rest counts; if it fills the box and more, the
+    /// box alone is measured.
     pub bounds: [[f64; 3]; 2],
     /// The volume is measured to this fraction of itself; the center of mass, the extent, the
     /// clearance and the thinnest wall to this fraction of the longest side of the bounds.
@@ -155,4 +157,53 @@ fn inertia(integrals: &Integrals) -> Option<[Proven; 6]> {
     let [xx, yy, zz, xy, xz, yz] = about_center;
     let tensor = [yy.add(zz), xx.add(zz), xx.add(yy), xy.neg(), xz.neg(), yz.neg()];
     Some(tensor.map(ends_of))
+}
+
+#[cfg(test)]
+mod tests {
+    use sdfc_graph::{Dim, Graph};
+
+    use super::*;
+
+    fn ball(radius: f64) -> Program {
+        let mut graph = Graph::new();
+        let p = graph.point(0, Dim::Three);
+        let (length, radius) = (graph.length(p), graph.number(radius));
+        let ball = graph.sub(length, radius);
+        Program { graph, distance: Some(ball), ..Program::default() }
+    }
+
+    fn measured(radius: f64, bounds: [[f64; 3]; 2]) -> Measurements {
+        let (program, options) = (ball(radius), MeasureOptions::new(bounds));
+        let frame = FrameValues::default();
+        measure(&program, &frame, &options, &mut |_| ControlFlow::Continue(())).unwrap()
+    }
+
+    fn holds([lo, hi]: Proven, truth: f64) {
+        assert!(lo <= truth && truth <= hi && hi - lo < 0.01, "{truth}: {lo} .. {hi}");
+    }
+
+    #[test]
+    fn a_solid_that_fills_the_bounds_is_measured_within_them() {
+        let found = measured(20.0, [[1.0, 2.0, 3.0], [2.0, 4.0, 6.0]]);
+        holds(found.volume, 6.0);
+        let (center, inertia) = (found.center_of_mass.unwrap(), found.inertia.unwrap());
+        let (lowest, highest) = (found.lowest.unwrap(), found.highest.unwrap());
+        for axis in 0..3 {
+            holds(center[axis], [1.5, 3.0, 4.5][axis]);
+            holds(lowest[axis], [1.0, 2.0, 3.0][axis]);
+            holds(highest[axis], [2.0, 4.0, 6.0][axis]);
+        }
+        for (product, truth) in inertia.into_iter().zip([6.5, 5.0, 2.5, 0.0, 0.0, 0.0]) {
+            holds(product, truth);
+        }
+        assert_eq!((found.area_estimate, found.is_limited), (0.0, false));
+    }
+
+    #[test]
+    fn bounds_beside_a_solid_hold_no_volume() {
+        let found = measured(0.5, [[1.0; 3], [2.0; 3]]);
+        holds(found.volume, 0.0);
+        assert_eq!((found.center_of_mass, found.lowest), (None, None));
+    }
 }

@@ -136,6 +136,7 @@ enum Outcome<'f> {
 /// A solid that is measured.
 pub(crate) struct Integrator<'a, 'f> {
     pub(crate) field: &'a LocalField<'f>,
+    /// A box that contains the solid.
     pub(crate) bounds: [Vec3; 2],
     /// The volume is known to this part of itself at the end, and the center of mass to this part
     /// of the longest side.
@@ -170,7 +171,12 @@ impl<'f> Integrator<'_, 'f> {
         let mut inner: Option<[Vec3; 2]> = None;
         match examine(cube, self.field, side) {
             Outcome::Open(part) => open.push(part),
-            Outcome::Outside | Outcome::Inside(_) => {}
+            // The solid reaches beyond the bounds, and fills them.
+            Outcome::Inside(_) => {
+                sums = Moments::of_box(self.bounds, about);
+                inner = Some(self.bounds);
+            }
+            Outcome::Outside => {}
         }
         let mut finished = Vec::new();
         let mut cells = 1;
