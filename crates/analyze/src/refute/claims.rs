@@ -1,19 +1,17 @@
 //! Tests of Lipschitz annotations of functions where the scene calls them.
 
-use sdfc_graph::eval::{Evaluator, FrameValues, Tape, evaluate_frame};
+use sdfc_graph::eval::{Evaluator, Tape, evaluate_frame};
 use sdfc_graph::{
     Bounds, Dim, Expander, Graph, LipschitzClaim, Node, NodeId, Scene, ShapeId, Stage, reachable,
 };
 
-use crate::refute::frames::{ParamValues, axes, frames};
-use crate::refute::probe::{Effort, Random};
+use crate::refute::frames::{ParamValues, frames};
+use crate::refute::sampling::{Effort, REACH, Random, corners_at, point_of, window};
 
 /// Number of pairs of points, in the bounds of each shape whose formula has the call.
 const PAIRS: usize = 2000;
 /// Largest number of such shapes that are sampled.
 const SHAPES: usize = 4;
-/// Half the sampled interval on an axis without bounds.
-const REACH: f64 = 2.0;
 /// Relative tolerance, and rounding tolerance, below which an exceeded constant is not reported.
 const SLACK: f64 = 1e-6;
 const ROUNDING: f64 = 1e-12;
@@ -65,10 +63,11 @@ pub fn refute_lipschitz(
     frames.into_iter().find_map(|(params, frame)| {
         let constant = evaluate_frame(graph, &[constant], &frame).first()?[0];
         corners.iter().find_map(|corners| {
-            let ends = evaluate_frame(graph, corners, &frame);
-            let window = [ends.first()?, ends.get(1)?].map(|end| [end[0], end[1], end[2]]);
-            let mut pairs = Pairs::new(&tape, &frame, window, axes(dim));
-            let count = effort.of(PAIRS, &tape);
+            let axes = dim.point_type().width();
+            let window = window(corners_at(graph, *corners, &frame)?, axes, REACH)?;
+            let values = tape.prepare(&frame);
+            let mut pairs = Pairs { values, random: Random(13), window, axes };
+            let count = effort.samples(PAIRS, 1, &tape);
             let (from, to, slope) = pairs.steeper(constant, count)?;
             Some(LipschitzViolation { constant, slope, from, to, params })
         })
@@ -103,11 +102,7 @@ fn callers(graph: &Graph, root: Option<ShapeId>, value: NodeId) -> Vec<ShapeId> 
 
 /// The result and the arguments of the call as a tape.
 fn call_tape(graph: &mut Graph, dim: Dim, value: NodeId, arguments: &[NodeId]) -> Option<Tape> {
-    let space = graph.point(0, Dim::Three);
-    let point = match dim {
-        Dim::Two => graph.swizzle(space, &[0, 1]),
-        Dim::Three => space,
-    };
+    let point = point_of(graph, dim);
     let mut expander = Expander::new();
     let mut roots = Vec::with_capacity(arguments.len() + 1);
     for &node in [value].iter().chain(arguments) {
@@ -124,23 +119,12 @@ struct Pairs<'t> {
     axes: usize,
 }
 
-impl<'t> Pairs<'t> {
-    fn new(tape: &'t Tape, frame: &FrameValues, bounds: [[f64; 3]; 2], axes: usize) -> Self {
-        let mut window = [[0.0; 3]; 2];
-        for axis in 0..axes {
-            let [lo, hi] = [bounds[0][axis], bounds[1][axis]];
-            let lo = if lo.is_finite() { lo } else { hi.min(REACH) - 2.0 * REACH };
-            let hi = if hi.is_finite() { hi } else { lo + 2.0 * REACH };
-            (window[0][axis], window[1][axis]) = (lo, hi);
-        }
-        Self { values: tape.prepare(frame), random: Random(13), window, axes }
-    }
-
+impl Pairs<'_> {
     /// Two points between which the slope exceeds `constant`, and the slope.
     fn steeper(&mut self, constant: f64, count: usize) -> Option<(Vec<f64>, Vec<f64>, f64)> {
         (0..count).find_map(|pair| {
             let fraction = [1.0, 1e-2, 1e-4][pair % 3];
-            let (from, other) = (self.point(), self.point());
+            let [from, other] = [(); 2].map(|()| self.random.point(self.window, self.axes));
             let to = [0, 1, 2].map(|axis| from[axis] + fraction * (other[axis] - from[axis]));
             let [before, after] = [from, to].map(|point| self.values.eval(point).to_vec());
             let distance = |a: &[f64; 4], b: &[f64; 4]| {
@@ -153,14 +137,6 @@ impl<'t> Pairs<'t> {
             let is_steeper = rise > constant * run * (1.0 + SLACK) + ROUNDING * size;
             let lanes = |point: [f64; 3]| point[..self.axes].to_vec();
             (is_steeper && run > ROUNDING * size).then(|| (lanes(from), lanes(to), rise / run))
-        })
-    }
-
-    /// A random point of the window.
-    fn point(&mut self) -> [f64; 3] {
-        [0, 1, 2].map(|axis| {
-            let (lo, hi) = (self.window[0][axis], self.window[1][axis]);
-            lo + (hi - lo) * self.random.next()
         })
     }
 }

@@ -14,8 +14,9 @@ use crate::certify::promise::Promise;
 use crate::certify::quality::{Qualities, Stated};
 use crate::refute::copies::{CopiesViolation, copies_violation};
 use crate::refute::frames::{ParamValues, frames};
-use crate::refute::probe::{Effort, Probe};
+use crate::refute::probe::Probe;
 use crate::refute::rays::{RayViolation, intersect_violation};
+use crate::refute::sampling::Effort;
 
 /// Relative error that intervals along rays may have.
 const RAY_ROUNDING: f64 = 1e-8;

@@ -5,11 +5,11 @@
 //! samples, under the maps that are valid at p. And every point inside the shape is inside a sample
 //! at that point.
 
-use sdfc_graph::eval::{Dual, Evaluator, FrameValues, Tape, evaluate_frame};
+use sdfc_graph::eval::{Dual, Evaluator, FrameValues, Tape};
 use sdfc_graph::{Bounds, Dim, Expander, Graph, NodeId, Param, Scene, ShapeId};
 
 use crate::analytic::copies::{CopySample, split_copies};
-use crate::refute::probe::{Effort, Random};
+use crate::refute::sampling::{Effort, REACH, Random, corners_at, grown, longest, window};
 
 /// Number of points around which balls are tested, and of points outside from which each point of
 /// the shape is tested.
@@ -17,9 +17,8 @@ const POINTS: usize = 2000;
 const OUTSIDE_POINTS: usize = 6;
 /// Newton steps towards the inside of the shape.
 const STEPS: usize = 12;
-/// Smallest half of the sampled interval on an axis without bounds, and the number of times it may
-/// be multiplied by four.
-const REACH: f64 = 2.0;
+/// Number of lengths of the sampled interval on an axis without bounds, each four times as long as
+/// the one before.
 const WIDENINGS: usize = 4;
 /// Rounding error of the field, as a fraction of the size of the shape.
 const SLACK: f64 = 1e-6;
@@ -67,15 +66,14 @@ pub(super) fn copies_violation(
     }
     let corners = Bounds::new(params).of(graph, shape);
     let [around, field] = [ball_tape(graph, shape)?, field(graph, shape)?];
-    let ends = evaluate_frame(graph, &corners, frame);
     let mut sampler = Sampler {
         around: around.prepare(frame),
         field: field.prepare(frame),
         random: Random(5),
-        bounds: [0, 1].map(|end| [0, 1, 2].map(|axis| ends[end][axis])),
+        bounds: corners_at(graph, corners, frame)?,
         radius_factor,
     };
-    (0..effort.of(POINTS, &around)).find_map(|_| sampler.point())
+    (0..effort.samples(POINTS, 1, &around)).find_map(|_| sampler.point())
 }
 
 fn field(graph: &mut Graph, shape: ShapeId) -> Option<Tape> {
@@ -118,10 +116,10 @@ struct Sampler<'t> {
 impl Sampler<'_> {
     /// Tests one random point and a point of the shape near it.
     fn point(&mut self) -> Option<CopiesViolation> {
-        let (p, size) = self.random_point();
+        let (p, size) = self.random_point()?;
         for fraction in [1.0 - 1e-9, self.random.next()] {
             let reach = self.reach(p).clamp(0.0, size);
-            let offset = self.direction().map(|x| x * reach * fraction);
+            let offset = self.random.direction().map(|x| x * reach * fraction);
             if let Some(fault) = self.fault(p, offset, size) {
                 return Some(fault);
             }
@@ -134,7 +132,7 @@ impl Sampler<'_> {
         (0..OUTSIDE_POINTS).find_map(|index| {
             let height =
                 size * 0.01f64.powf((index as f64 + self.random.next()) / OUTSIDE_POINTS as f64);
-            let up = if index == 0 { self.direction() } else { [nx, ny, nz] };
+            let up = if index == 0 { self.random.direction() } else { [nx, ny, nz] };
             let from = [0, 1, 2].map(|axis| within[axis] + height * up[axis]);
             let offset = [0, 1, 2].map(|axis| within[axis] - from[axis]);
             self.fault(from, offset, size)
@@ -174,32 +172,13 @@ impl Sampler<'_> {
         is_other.then_some(CopiesViolation { from, reach, to, field })
     }
 
-    /// A random point around the shape, and the size of the sampled box.
-    fn random_point(&mut self) -> ([f64; 3], f64) {
+    /// A random point around the shape, and the size of the sampled box. Returns `None` if the
+    /// bounds are empty.
+    fn random_point(&mut self) -> Option<([f64; 3], f64)> {
         let reach = REACH * 4f64.powi(self.random.below(WIDENINGS) as i32);
-        let mut size = 0.0f64;
-        let point = [0, 1, 2].map(|axis| {
-            let [lo, hi] = match [self.bounds[0][axis], self.bounds[1][axis]] {
-                [lo, hi] if lo.is_finite() && hi.is_finite() => [lo, hi],
-                [lo, _] if lo.is_finite() => [lo, lo + reach],
-                [_, hi] if hi.is_finite() => [hi - reach, hi],
-                _ => [-reach, reach],
-            };
-            let margin = 0.25 * (hi - lo);
-            size = size.max(hi - lo);
-            lo - margin + (hi - lo + 2.0 * margin) * self.random.next()
-        });
-        (point, size)
-    }
-
-    /// A unit vector.
-    fn direction(&mut self) -> [f64; 3] {
-        loop {
-            let vector = [0, 1, 2].map(|_| 2.0 * self.random.next() - 1.0);
-            let length = vector.iter().map(|x| x * x).sum::<f64>().sqrt();
-            if length > 1e-3 && length <= 1.0 {
-                return vector.map(|x| x / length);
-            }
-        }
+        let [lo, hi] = window(self.bounds, 3, reach)?;
+        let margin = [0, 1, 2].map(|axis| 0.25 * (hi[axis] - lo[axis]));
+        let point = self.random.point(grown([lo, hi], margin), 3);
+        Some((point, longest([lo, hi])))
     }
 }

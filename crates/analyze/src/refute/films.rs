@@ -8,11 +8,11 @@
 //! passes an edge has such a minimum with probability 0.
 
 use rustc_hash::FxHashSet;
-use sdfc_graph::eval::{FrameValues, evaluate_frame};
+use sdfc_graph::eval::FrameValues;
 use sdfc_graph::{Binary, Bounds, Graph, Node, NodeId, Scene, ShapeId, reachable_where};
 
-use crate::refute::frames::axes;
-use crate::refute::probe::{Effort, Probe};
+use crate::refute::probe::Probe;
+use crate::refute::sampling::{Effort, corners_at};
 
 /// Number of lines for each child of a shape.
 const LINES: usize = 32;
@@ -85,7 +85,7 @@ fn film(
     left: &mut u64,
 ) -> Option<Vec<f64>> {
     let whole = bounds.of(graph, shape);
-    let width = axes(graph.shape(shape).dim);
+    let width = graph.shape(shape).dim.point_type().width();
     let children = graph.shape(shape).children.clone();
     let windows: Vec<[[f64; 3]; 2]> = children
         .into_iter()
@@ -112,7 +112,6 @@ fn overlap(
     width: usize,
 ) -> Option<[[f64; 3]; 2]> {
     let corners = [graph.max(a[0], b[0]), graph.min(a[1], b[1])];
-    let ends = evaluate_frame(graph, &corners, frame);
-    let [lo, hi] = [ends.first()?, ends.get(1)?].map(|end| [end[0], end[1], end[2]]);
+    let [lo, hi] = corners_at(graph, corners, frame)?;
     (0..width).all(|axis| lo[axis] <= hi[axis]).then_some([lo, hi])
 }

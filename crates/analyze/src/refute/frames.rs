@@ -1,7 +1,7 @@
 //! The values of params at which clauses are sampled.
 
+use sdfc_graph::Param;
 use sdfc_graph::eval::FrameValues;
-use sdfc_graph::{Dim, Param};
 
 /// The values of the params within their ranges.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,9 +30,4 @@ pub(super) fn frames(params: &[Param]) -> Vec<(ParamValues, FrameValues)> {
         frames.extend([(ParamValues::Low, at(0)), (ParamValues::High, at(1))]);
     }
     frames
-}
-
-/// The number of coordinates of a point.
-pub(super) fn axes(dim: Dim) -> usize {
-    dim.point_type().width()
 }

@@ -7,3 +7,4 @@ pub(crate) mod films;
 pub(crate) mod frames;
 pub(crate) mod probe;
 pub(crate) mod rays;
+pub(crate) mod sampling;

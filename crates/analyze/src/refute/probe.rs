@@ -1,10 +1,12 @@
 //! Samples of one shape's field.
 
-use sdfc_graph::eval::{Dual, Evaluator, FrameValues, Tape, evaluate_frame};
-use sdfc_graph::{Dim, Expander, Graph, NodeId, ShapeId};
+use sdfc_graph::eval::{Dual, Evaluator, FrameValues, Tape};
+use sdfc_graph::{Expander, Graph, NodeId, ShapeId};
 
 use crate::certify::promise::Promise;
-use crate::refute::frames::axes;
+use crate::refute::sampling::{
+    Effort, Point, REACH, Random, corners_at, distance, grown, longest, point_of, window,
+};
 
 /// Number of pairs of points for a constant, of points for bounds and promises, and of points on
 /// the surface.
@@ -25,13 +27,9 @@ const BEYOND: f64 = 0.2;
 const FILM: f64 = 1e-6;
 /// How much steeper than between two points of a line the field may be between them.
 const STEEPEST: f64 = 8.0;
-/// Half the sampled interval on an axis without bounds.
-const REACH: f64 = 2.0;
 /// Relative tolerances of constants and of distances. A promise that fails by less is not reported.
 const SLACK: f64 = 1e-6;
 const INEXACT: f64 = 1e-3;
-
-type Point = [f64; 3];
 
 /// One shape's field at fixed values of the params.
 pub(super) struct Probe {
@@ -48,19 +46,6 @@ pub(super) struct Probe {
     effort: Effort,
 }
 
-/// The scalar operations that one test of a clause may take. A field that takes many is sampled at
-/// fewer points.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Effort(pub(super) u64);
-
-impl Effort {
-    /// Returns how many of `count` samples may be taken.
-    pub(super) fn of(self, count: usize, tape: &Tape) -> usize {
-        let most = self.0 / (tape.operations() as u64).max(1);
-        count.min(usize::try_from(most).unwrap_or(count))
-    }
-}
-
 impl Probe {
     /// Expands the field. Returns `None` if that fails, or if the bounds are empty.
     pub(super) fn new(
@@ -71,19 +56,14 @@ impl Probe {
         effort: Effort,
     ) -> Option<Self> {
         let dim = graph.shape(shape).dim;
-        let values = evaluate_frame(graph, &corners, frame);
-        let corner = |lanes: &[f64; 4]| [lanes[0], lanes[1], lanes[2]];
-        let bounds = [corner(values.first()?), corner(values.get(1)?)];
-        let point = graph.point(0, Dim::Three);
-        let point = match dim {
-            Dim::Two => graph.swizzle(point, &[0, 1]),
-            Dim::Three => point,
-        };
+        let axes = dim.point_type().width();
+        let bounds = corners_at(graph, corners, frame)?;
+        let point = point_of(graph, dim);
         let field = Expander::new().field(graph, shape, point).ok()?;
         let tape = Tape::new(graph, &[field]).ok()?;
-        let region = finite(bounds, axes(dim))?;
+        let region = window(bounds, axes, REACH)?;
         let scale = longest(region);
-        let (axes, frame, random) = (axes(dim), frame.clone(), Random(7));
+        let (frame, random) = (frame.clone(), Random(7));
         (scale > 0.0).then_some(Self { tape, frame, axes, bounds, region, scale, random, effort })
     }
 
@@ -109,18 +89,13 @@ impl Probe {
     /// A random point of a box, which is enlarged by a fraction of its size.
     fn point_in(&mut self, region: [Point; 2], enlarged: f64) -> Point {
         let margin = enlarged * longest(region);
-        let mut point = [0.0; 3];
-        for (axis, coordinate) in point.iter_mut().enumerate().take(self.axes) {
-            let (lo, hi) = (region[0][axis], region[1][axis]);
-            *coordinate = lo - margin + (hi - lo + 2.0 * margin) * self.random.next();
-        }
-        point
+        self.random.point(grown(region, [margin; 3]), self.axes)
     }
 
     /// A point inside the shape and outside its bounds, and the field there.
     pub(super) fn beyond_bounds(&mut self) -> Option<(Vec<f64>, f64)> {
         let slack = SLACK * self.scale;
-        (0..self.effort.of(PAIRS, &self.tape)).find_map(|index| {
+        (0..self.effort.samples(PAIRS, 1, &self.tape)).find_map(|index| {
             let p = self.point([0.02, 0.2, 1.0][index % 3]);
             let beyond = |axis: usize| {
                 p[axis] < self.bounds[0][axis] - slack || p[axis] > self.bounds[1][axis] + slack
@@ -132,7 +107,7 @@ impl Probe {
 
     /// Two points of the region between which the slope exceeds `constant`, and the slope.
     pub(super) fn steeper(&mut self, constant: f64) -> Option<(Point, Point, f64)> {
-        let count = self.effort.of(PAIRS, &self.tape);
+        let count = self.effort.samples(PAIRS, 1, &self.tape);
         let pairs: Vec<[Point; 2]> =
             (0..count).map(|_| [self.point(0.0), self.point(0.0)]).collect();
         let mut field = self.field();
@@ -169,7 +144,7 @@ impl Probe {
         if surface.is_empty() {
             return None;
         }
-        for index in 0..self.effort.of(POINTS, &self.tape) {
+        for index in 0..self.effort.samples(POINTS, 1, &self.tape) {
             let p = self.point([0.0, 0.5][index % 2]);
             let field = self.at(p);
             let promise = promised[usize::from(field < 0.0)];
@@ -214,9 +189,9 @@ impl Probe {
 
     /// A point of a film on a random line through a box: a minimum of the field along the line that
     /// is 0 and not negative. Axes on which the box is infinite are limited.
-    pub(super) fn film_in(&mut self, window: [Point; 2]) -> Option<Vec<f64>> {
-        let window = finite(window, self.axes)?;
-        let [from, to] = [(); 2].map(|()| self.point_in(window, BEYOND));
+    pub(super) fn film_in(&mut self, bounds: [Point; 2]) -> Option<Vec<f64>> {
+        let region = window(bounds, self.axes, REACH)?;
+        let [from, to] = [(); 2].map(|()| self.point_in(region, BEYOND));
         let mut at = film_between(&mut self.field(), from, to)?;
         // Other coordinates are rounding errors.
         for coordinate in &mut at {
@@ -228,7 +203,7 @@ impl Probe {
     /// Points of the surface, by bisection between points of opposite sign.
     fn surface(&mut self) -> Vec<Point> {
         // Each point of the surface takes a bisection.
-        let count = self.effort.of(SURFACE * BISECTIONS, &self.tape) / BISECTIONS;
+        let count = self.effort.samples(SURFACE, BISECTIONS, &self.tape);
         let points: Vec<Point> = (0..4 * count).map(|i| self.point([0.0, 0.1][i % 2])).collect();
         let mut field = self.tape.prepare::<f64>(&self.frame);
         let (inside, outside): (Vec<_>, Vec<_>) =
@@ -257,7 +232,7 @@ impl Probe {
             let spread = 0.5f64.powf(12.0 * index as f64 / ITERATIONS as f64);
             let mut target = best;
             for coordinate in target.iter_mut().take(self.axes) {
-                *coordinate += nearest_surface * spread * (2.0 * self.random.next() - 1.0);
+                *coordinate += nearest_surface * spread * self.random.signed();
             }
             let length = distance(p, target).max(1e-30);
             let target = mix(p, target, nearest_surface * (1.0 - 1e-6) / length);
@@ -278,30 +253,6 @@ fn crossing(field: &mut Evaluator<'_, f64>, mut from: Point, mut to: Point) -> P
         *end = middle;
     }
     from
-}
-
-/// The box, limited where it is infinite. `None` if it is empty.
-fn finite(bounds: [Point; 2], axes: usize) -> Option<[Point; 2]> {
-    let mut region = [[0.0; 3]; 2];
-    for axis in 0..axes {
-        let [lo, hi] = [bounds[0][axis], bounds[1][axis]];
-        let (lo, hi) = match (lo.is_finite(), hi.is_finite()) {
-            (true, true) => (lo, hi),
-            (true, false) => (lo, lo + 2.0 * REACH),
-            (false, true) => (hi - 2.0 * REACH, hi),
-            (false, false) => (-REACH, REACH),
-        };
-        if lo > hi {
-            return None;
-        }
-        (region[0][axis], region[1][axis]) = (lo, hi);
-    }
-    Some(region)
-}
-
-/// The longest edge of a box.
-fn longest([lo, hi]: [Point; 2]) -> f64 {
-    [0, 1, 2].map(|axis| hi[axis] - lo[axis]).into_iter().fold(0.0, f64::max)
 }
 
 /// A point between two points at which the field is 0 and a minimum along the line.
@@ -352,27 +303,4 @@ fn zero_between(
 
 fn mix(a: Point, b: Point, t: f64) -> Point {
     [0, 1, 2].map(|axis| a[axis] + (b[axis] - a[axis]) * t)
-}
-
-fn distance(a: Point, b: Point) -> f64 {
-    [0, 1, 2].map(|axis| (a[axis] - b[axis]).powi(2)).iter().sum::<f64>().sqrt()
-}
-
-/// The SplitMix64 generator: the same numbers on every machine.
-pub(super) struct Random(pub(super) u64);
-
-impl Random {
-    /// A random integer in `0..count`.
-    pub(super) fn below(&mut self, count: usize) -> usize {
-        (self.next() * count as f64) as usize
-    }
-
-    /// A random number in `0..1`.
-    pub(super) fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
-    }
 }

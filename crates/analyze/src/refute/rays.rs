@@ -7,7 +7,7 @@
 use sdfc_graph::eval::{Evaluator, FrameValues, Number, Tape};
 use sdfc_graph::{Bounds, Dim, Expander, Graph, NodeId, Param, Scene, ShapeId};
 
-use crate::refute::probe::{Effort, Random};
+use crate::refute::sampling::{Effort, Random, corners_at, longest, window};
 
 /// Number of rays for each shape.
 const RAYS: usize = 4000;
@@ -15,7 +15,7 @@ const RAYS: usize = 4000;
 const SAMPLES: usize = 24;
 /// Largest distance of a ray's origin, in sizes of the shape.
 const FARTHEST: f64 = 30.0;
-/// Half the sampled interval on an axis without bounds.
+/// Half the length of the sampled interval on an axis without bounds.
 const REACH: f64 = 1.5;
 
 /// A ray along which the field contradicts the intervals.
@@ -73,25 +73,18 @@ pub(super) fn intersect_violation<N: Number + Into<f64>>(
     let ends: Option<Vec<NodeId>> =
         stated.as_flattened().iter().map(|&end| expander.node(graph, end, &rays).ok()).collect();
     let (field, ends) = (Tape::new(graph, &[distance]).ok()?, Tape::for_rays(graph, &ends?).ok()?);
-    let corners = sdfc_graph::eval::evaluate_frame(graph, &corners, frame);
-    let window = [0, 1].map(|end| [0, 1, 2].map(|axis| cut(corners[end][axis], end)));
-    let size = (0..3).map(|axis| window[1][axis] - window[0][axis]).fold(0.0, f64::max);
+    let window = window(corners_at(graph, corners, frame)?, 3, REACH)?;
     let mut sampler = Sampler {
         exact: field.prepare(frame),
         ends: ends.prepare::<N>(frame),
         random: Random(1),
         window,
-        size: size.max(1e-3),
+        size: longest(window).max(1e-3),
         rounding,
     };
     // Each ray takes samples of the field.
-    let rays = effort.of(RAYS * SAMPLES, &field) / SAMPLES;
+    let rays = effort.samples(RAYS, SAMPLES, &field);
     (0..rays).find_map(|_| sampler.ray())
-}
-
-/// The end of an axis of the bounds, limited if it is infinite.
-fn cut(end: f64, side: usize) -> f64 {
-    if end.is_finite() { end } else { [-REACH, REACH][side] }
 }
 
 /// The field and the intervals of a shape, and the rays to sample.
@@ -108,7 +101,7 @@ struct Sampler<'t, N> {
 impl<N: Number + Into<f64>> Sampler<'_, N> {
     /// Tests one random ray.
     fn ray(&mut self) -> Option<RayViolation> {
-        let (target, direction) = (self.target(), self.direction());
+        let (target, direction) = (self.target(), self.random.direction_by_axes());
         let back = match self.random.below(4) {
             0 => 0.0,
             1 => FARTHEST * self.random.next(),
@@ -189,21 +182,6 @@ impl<N: Number + Into<f64>> Sampler<'_, N> {
             slopes[axis + 1] = (self.exact.scalar(beside) - here) / step;
         }
         slopes
-    }
-
-    /// A random unit vector, often parallel to an axis or in the plane of two.
-    fn direction(&mut self) -> [f64; 3] {
-        loop {
-            let vector = [0, 1, 2].map(|_| match self.random.below(5) {
-                0 | 1 => 0.0,
-                2 => 1e-4 * (2.0 * self.random.next() - 1.0),
-                _ => 2.0 * self.random.next() - 1.0,
-            });
-            let length = vector.iter().map(|x| x * x).sum::<f64>().sqrt();
-            if length > 1e-6 {
-                return vector.map(|x| x / length);
-            }
-        }
     }
 }
 
