@@ -68,9 +68,10 @@ pub enum Clause {
 }
 
 /// Searches for points at which clauses of the shapes fail, and returns at most one for each shape.
-/// It takes about ten thousand evaluations for each shape, but no more than about `operations`
-/// scalar operations in total. Shapes whose arguments depend on a point, and fields that do not
-/// expand, are skipped.
+/// It takes some ten thousand evaluations for each shape, but no more than about five times
+/// `operations` scalar operations in total: each sample counts as at least one evaluation, and
+/// takes up to eight. Shapes whose arguments depend on a point, and fields that do not expand, are
+/// skipped.
 pub fn refute(scene: &Scene, shapes: &[ShapeId], operations: u64) -> Vec<Violation> {
     let is_fixed = |&&shape: &&ShapeId| scene.graph.shape(shape).level == 0;
     let tests = (TESTS * shapes.len() * frames(&scene.params).len()).max(1);

@@ -15,6 +15,9 @@ use crate::refute::sampling::{Effort, REACH, Random, corners_at, grown, longest,
 /// the shape is tested.
 const POINTS: usize = 2000;
 const OUTSIDE_POINTS: usize = 6;
+/// Evaluations that the tests around one point count as: three for each of nine balls, and the
+/// Newton steps.
+const EVALUATIONS: usize = 40;
 /// Newton steps towards the inside of the shape.
 const STEPS: usize = 12;
 /// Number of lengths of the sampled interval on an axis without bounds, each four times as long as
@@ -73,7 +76,7 @@ pub(super) fn copies_violation(
         bounds: corners_at(graph, corners, frame)?,
         radius_factor,
     };
-    (0..effort.samples(POINTS, 1, &around)).find_map(|_| sampler.point())
+    (0..effort.samples(POINTS, EVALUATIONS, &around)).find_map(|_| sampler.point())
 }
 
 fn field(graph: &mut Graph, shape: ShapeId) -> Option<Tape> {

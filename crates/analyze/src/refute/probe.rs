@@ -135,7 +135,7 @@ impl Probe {
     }
 
     /// A point at which the field breaks the promises for outside and inside, the field and the
-    /// distance there.
+    /// distance there. All searches for distances share the evaluations that a test may take.
     pub(super) fn wrong_distance(
         &mut self,
         promised: [Promise; 2],
@@ -144,6 +144,7 @@ impl Probe {
         if surface.is_empty() {
             return None;
         }
+        let mut left = self.effort.evaluations(&self.tape);
         for index in 0..self.effort.samples(POINTS, 1, &self.tape) {
             let p = self.point([0.0, 0.5][index % 2]);
             let field = self.at(p);
@@ -158,9 +159,10 @@ impl Probe {
             let size = field.abs();
             let too_far = size > distance(p, nearest) * (1.0 + INEXACT) + SLACK * self.scale;
             if too_far || (promise == Promise::Exact && !self.has_foot(p, field)) {
-                let nearest_surface = self.nearest_distance(p, nearest);
+                let (nearest_surface, is_found) = self.nearest_distance(p, nearest, &mut left);
                 let slack = INEXACT * nearest_surface + SLACK * self.scale;
-                let under = promise == Promise::Exact && size < nearest_surface - slack;
+                let exact = is_found && promise == Promise::Exact;
+                let under = exact && size < nearest_surface - slack;
                 if size > nearest_surface + slack || under {
                     return Some((self.lanes(p), field, nearest_surface));
                 }
@@ -222,12 +224,16 @@ impl Probe {
     }
 
     /// The distance to the nearest point of the surface, by a random search that starts at `first`.
-    fn nearest_distance(&mut self, p: Point, first: Point) -> f64 {
+    /// Returns false with an upper bound if no evaluations are left for the search.
+    fn nearest_distance(&mut self, p: Point, first: Point, left: &mut u64) -> (f64, bool) {
         let mut field = self.tape.prepare::<f64>(&self.frame);
         let sign = field.scalar(p) < 0.0;
         let mut best = first;
         for index in 0..ITERATIONS {
             let nearest_surface = distance(p, best);
+            if *left == 0 {
+                return (nearest_surface, false);
+            }
             // The search narrows with each iteration.
             let spread = 0.5f64.powf(12.0 * index as f64 / ITERATIONS as f64);
             let mut target = best;
@@ -236,11 +242,13 @@ impl Probe {
             }
             let length = distance(p, target).max(1e-30);
             let target = mix(p, target, nearest_surface * (1.0 - 1e-6) / length);
+            *left -= 1;
             if (field.scalar(target) < 0.0) != sign {
                 best = crossing(&mut field, p, target);
+                *left = left.saturating_sub(BISECTIONS as u64);
             }
         }
-        distance(p, best)
+        (distance(p, best), true)
     }
 }
 
@@ -303,4 +311,51 @@ fn zero_between(
 
 fn mix(a: Point, b: Point, t: f64) -> Point {
     [0, 1, 2].map(|axis| a[axis] + (b[axis] - a[axis]) * t)
+}
+
+#[cfg(test)]
+mod tests {
+    use sdfc_graph::Dim;
+
+    use super::*;
+
+    /// A ball of radius 1 whose field is a multiple of the distance, and the number of evaluations
+    /// that a test may take.
+    fn ball(slope: f64, evaluations: u64) -> Probe {
+        let mut graph = Graph::new();
+        let p = point_of(&mut graph, Dim::Three);
+        let (length, one, slope) = (graph.length(p), graph.number(1.0), graph.number(slope));
+        let distance = graph.sub(length, one);
+        let field = graph.mul(distance, slope);
+        let tape = Tape::new(&graph, &[field]).unwrap();
+        let effort = Effort(evaluations * tape.operations() as u64);
+        let (frame, bounds) = (FrameValues::default(), [[-1.0; 3], [1.0; 3]]);
+        let (axes, region, scale, random) = (3, bounds, 2.0, Random(7));
+        Probe { tape, frame, axes, bounds, region, scale, random, effort }
+    }
+
+    #[test]
+    fn a_search_takes_no_more_evaluations_than_are_left() {
+        let search = |mut left: u64| {
+            let found = ball(1.0, 0).nearest_distance([2.0, 0.0, 0.0], [0.6, 0.8, 0.0], &mut left);
+            (found, left)
+        };
+        let ((distance, is_found), left) = search(1_000_000);
+        assert!(is_found && (distance - 1.0).abs() < 1e-3, "{distance}");
+        let taken = 1_000_000 - left;
+        assert!((ITERATIONS as u64..100_000).contains(&taken), "{taken}");
+        let ((distance, is_found), left) = search(100);
+        assert!(!is_found && left == 0 && distance > 1.0, "{distance}");
+    }
+
+    #[test]
+    fn the_searches_of_a_test_share_its_evaluations() {
+        let exact = [Promise::Exact; 2];
+        assert!(ball(0.5, 100_000).wrong_distance(exact).is_some());
+        // Not enough for one search, without which the distance may be less.
+        assert_eq!(ball(0.5, ITERATIONS as u64 - 1).wrong_distance(exact), None);
+        // A point of the surface suffices.
+        assert!(ball(2.0, ITERATIONS as u64 - 1).wrong_distance(exact).is_some());
+        assert_eq!(ball(1.0, 100_000).wrong_distance(exact), None);
+    }
 }
