@@ -347,3 +347,6 @@ fn draw_tile<P: Pixels>(pixels: &P, tile: Tile) -> Vec<(Vec<Tile>, Vec<PixelBloc
         blocks.into_iter().map(|block| draw(&mut pixels, block)).collect()
     }
 }
+
+#[cfg(test)]
+mod tests;
