@@ -103,7 +103,7 @@ fn picture(pixel: vec2u) -> Pixel {
             found = trace(ray);
         }
         if REFLECTIONS {
-            if evaluations == 0u {
+            if lights_done == 0u && reflections == 0u {
                 first = found;
             }
         }
