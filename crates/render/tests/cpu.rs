@@ -247,6 +247,29 @@ fn a_soft_shadow_fades_as_the_clearance_says() {
 }
 
 #[test]
+fn a_lamp_is_not_in_the_shadow_of_the_ceiling_above_it() {
+    let place = glam::DVec3::new(0.0, 0.9, 0.0);
+    let mut program = common::lamp_at_ceiling(place.to_array(), Shadow::Hard);
+    let hard = floor_pixels(&program);
+    let sharpness = program.graph.number(8.0);
+    for light in &mut program.settings.lights {
+        light.shadow = Shadow::Soft(sharpness);
+    }
+    let soft = floor_pixels(&program);
+    let mut compared = 0;
+    for ((point, _, hard), (_, _, soft)) in hard.into_iter().zip(soft) {
+        let way = place - point;
+        // Grazing light passes the floor itself narrowly.
+        if way.y < 0.3 * way.length() {
+            continue;
+        }
+        compared += 1;
+        assert!((hard[0] - soft[0]).abs() < 1e-3, "{point}: {} and {}", hard[0], soft[0]);
+    }
+    assert!(compared > 300, "{compared}");
+}
+
+#[test]
 fn a_point_light_falls_off_with_the_square_of_the_distance() {
     let place = glam::DVec3::new(3.0, 0.5, 1.0);
     let (mut lit, mut shadowed) = (0, 0);

@@ -75,6 +75,21 @@ fn a_field_without_a_constant_is_a_warning_with_its_reason() {
     assert_eq!(codes("box([0.6, 2, 0.6]).twist(20deg)\nsphere(1)"), []);
 }
 
+#[test]
+fn clauses_are_tested_at_several_times() {
+    let ball = "solid ball() bounds -2..2 lipschitz 1 = length(p - [0, 2 * sin(time), 0]) - 1";
+    assert_eq!(codes(&format!("{ball}\nball()")), [("E0502", 1)]);
+    assert_eq!(codes(&format!("{}\nball()", ball.replace("-2..2", "-3..3"))), []);
+    assert_eq!(codes("solid wave() lipschitz 1 = p.y - sin(p.x) * time\nwave()"), [("E0502", 1)]);
+}
+
+#[test]
+fn a_bound_needs_no_constant() {
+    let text = "solid s() = (length(p) - 1) / (1 + length(p))\ns()";
+    assert_eq!(codes(text), [("W0602", 2)]);
+    assert_eq!(codes(&text.replace("s() =", "s() bound =")), []);
+}
+
 /// Returns the helps of the warnings W0602.
 fn helps(text: &str) -> Vec<String> {
     let found = Compiler::new().check("scene.sdf", text);
@@ -109,6 +124,17 @@ fn samples_do_not_refute_the_suggested_clauses() {
         let fixed = with_help(text);
         assert!(codes(&fixed).iter().all(|(code, _)| *code != "E0502"), "{fixed}");
     }
+    // The default of the param is not the steepest.
+    let ramp = "param a: number = 1 in 0..1\nsolid ramp() bounds -2..2\n  = max(p.y - 0.3 * \
+                smoothstep(a, 0.5, p.x), length(p) - 1.5)\nramp()";
+    let help = helps(ramp).concat();
+    let constant = help.split("lipschitz ").nth(1).and_then(|rest| rest.split('`').next());
+    let constant: f64 = constant.and_then(|text| text.parse().ok()).expect("a constant");
+    assert!(constant > 5.0, "{help}");
+    // The field jumps.
+    let steps = "solid steps() bounds -1..1\n  = max(0.2 * p.x * p.y + p.z - 0.3 * floor(2 * p.x), \
+                 length(p) - 0.9)\nsteps()";
+    assert!(helps(steps).concat().contains("grows without limit"), "{:?}", helps(steps));
     // The slope grows without limit near the axis.
     let knot = "solid knot() = {\n  let q = vec2(length(p.xz) - 1, p.y)\n  \
                 let r = spin(q, 1.5 * atan2(p.z, p.x))\n  \

@@ -32,6 +32,21 @@ fn flush_cuts_leave_films() {
 }
 
 #[test]
+fn formulas_that_are_nowhere_negative_are_films() {
+    for text in [
+        "solid wall() bound bounds -1..1 = max(abs(p.y), abs(p.x) - 1, abs(p.z) - 1)\nwall()",
+        "solid sheet() = 0.2 * abs(p.y - 0.3 * sin(p.x) * sin(p.z))\nsheet()",
+    ] {
+        let found = films(text);
+        let [(2, message)] = &found[..] else { panic!("{text}: {found:?}") };
+        assert!(message.contains("is a surface without an inside"), "{message}");
+    }
+    let thick =
+        "solid wall() bound bounds -1..1 = max(abs(p.y), abs(p.x) - 1, abs(p.z) - 1) - 0.01";
+    assert_eq!(films(&format!("{thick}\nwall()")), []);
+}
+
+#[test]
 fn other_solids_have_none() {
     for text in [
         "cylinder(r: 16, h: 40) - cylinder(r: 14, h: 40.001)",

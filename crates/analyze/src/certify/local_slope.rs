@@ -31,7 +31,7 @@ const MAX_RATIO: f64 = 16.0;
 const SAMPLES: usize = 5;
 
 /// The lowest and highest coordinate of a box on each axis.
-pub(super) type Region = [[f64; 2]; 3];
+pub(crate) type Region = [[f64; 2]; 3];
 
 /// The slopes of a formula within a box.
 pub(crate) struct Slope {
@@ -96,7 +96,7 @@ pub(crate) fn steepest_within(
 
 /// The smallest box that holds the bounds for all values of the params; `None` if it is empty or
 /// infinite.
-pub(super) fn region(
+pub(crate) fn region(
     graph: &Graph,
     bounds: [NodeId; 2],
     ranges: &FrameValues<Interval>,

@@ -18,4 +18,3 @@ pub(crate) mod piecewise;
 pub(crate) mod promise;
 pub(crate) mod quality;
 pub(crate) mod reason;
-pub(crate) mod suggest;

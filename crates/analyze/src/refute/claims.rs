@@ -1,11 +1,11 @@
 //! Tests of Lipschitz annotations of functions where the scene calls them.
 
-use sdfc_graph::eval::{Evaluator, Tape, evaluate_frame};
+use sdfc_graph::eval::{Evaluator, FrameValues, Tape, evaluate_frame};
 use sdfc_graph::{
     Bounds, Dim, Expander, Graph, LipschitzClaim, Node, NodeId, Scene, ShapeId, Stage, reachable,
 };
 
-use crate::refute::frames::{ParamValues, frames};
+use crate::refute::frames::frames;
 use crate::refute::sampling::{Effort, REACH, Random, corners_at, point_of, window};
 
 /// Number of pairs of points, in the bounds of each shape whose formula has the call.
@@ -27,8 +27,8 @@ pub struct LipschitzViolation {
     pub from: Vec<f64>,
     /// The second point.
     pub to: Vec<f64>,
-    /// The values of the params.
-    pub params: ParamValues,
+    /// The values of the params, and the time.
+    pub frame: FrameValues,
 }
 
 /// Searches for two points that refute the annotation of a function, of which `value` is the
@@ -58,9 +58,9 @@ pub fn refute_lipschitz(
     let tape = call_tape(graph, dim, value, &arguments)?;
     let mut bounds = Bounds::new(&scene.params);
     let corners: Vec<[NodeId; 2]> = shapes.iter().map(|&shape| bounds.of(graph, shape)).collect();
-    let frames = frames(&scene.params);
+    let frames = frames(graph, &scene.params);
     let effort = Effort(operations / (frames.len() * corners.len()).max(1) as u64);
-    frames.into_iter().find_map(|(params, frame)| {
+    frames.into_iter().find_map(|frame| {
         let constant = evaluate_frame(graph, &[constant], &frame).first()?[0];
         corners.iter().find_map(|corners| {
             let axes = dim.point_type().width();
@@ -69,7 +69,7 @@ pub fn refute_lipschitz(
             let mut pairs = Pairs { values, random: Random(13), window, axes };
             let count = effort.samples(PAIRS, 1, &tape);
             let (from, to, slope) = pairs.steeper(constant, count)?;
-            Some(LipschitzViolation { constant, slope, from, to, params })
+            Some(LipschitzViolation { constant, slope, from, to, frame: frame.clone() })
         })
     })
 }

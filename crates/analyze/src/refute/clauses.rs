@@ -13,7 +13,7 @@ use sdfc_graph::{Bounds, Graph, Param, Scene, ShapeId};
 use crate::certify::promise::Promise;
 use crate::certify::quality::{Qualities, Stated};
 use crate::refute::copies::{CopiesViolation, copies_violation};
-use crate::refute::frames::{ParamValues, frames};
+use crate::refute::frames::frames;
 use crate::refute::probe::Probe;
 use crate::refute::rays::{RayViolation, intersect_violation};
 use crate::refute::sampling::Effort;
@@ -34,8 +34,8 @@ pub struct Violation {
     pub at: Vec<f64>,
     /// The field at that point.
     pub field: f64,
-    /// The values of the params.
-    pub params: ParamValues,
+    /// The values of the params, and the time.
+    pub frame: FrameValues,
 }
 
 /// A clause that does not hold, and what is true instead.
@@ -74,7 +74,7 @@ pub enum Clause {
 /// skipped.
 pub fn refute(scene: &Scene, shapes: &[ShapeId], operations: u64) -> Vec<Violation> {
     let is_fixed = |&&shape: &&ShapeId| scene.graph.shape(shape).level == 0;
-    let tests = (TESTS * shapes.len() * frames(&scene.params).len()).max(1);
+    let tests = (TESTS * shapes.len() * frames(&scene.graph, &scene.params).len()).max(1);
     let effort = Effort(operations / tests as u64);
     let shapes = shapes.iter().filter(is_fixed);
     shapes.filter_map(|&shape| violation(scene, shape, effort)).collect()
@@ -86,10 +86,10 @@ fn violation(scene: &Scene, shape: ShapeId, effort: Effort) -> Option<Violation>
     let copy = extract.shape(shape)?;
     let (graph, params) = (&mut extract.graph, &scene.params[..]);
     let stated = Qualities::of_scene(graph, copy, params).stated(graph, copy);
-    let (fault, params) = intersect_fault(graph, params, copy, effort)
+    let (fault, frame) = intersect_fault(graph, params, copy, effort)
         .or_else(|| copies_fault(graph, params, copy, effort))
         .or_else(|| field_fault(graph, params, copy, &stated, effort))?;
-    Some(Violation { shape, clause: fault.clause, at: fault.at, field: fault.field, params })
+    Some(Violation { shape, clause: fault.clause, at: fault.at, field: fault.field, frame })
 }
 
 /// A ray with wrong intervals.
@@ -98,11 +98,11 @@ fn intersect_fault(
     params: &[Param],
     shape: ShapeId,
     effort: Effort,
-) -> Option<(Fault, ParamValues)> {
-    frames(params).into_iter().find_map(|(values, frame)| {
+) -> Option<(Fault, FrameValues)> {
+    frames(graph, params).into_iter().find_map(|frame| {
         let fault = intersect_violation::<f64>(graph, params, shape, &frame, RAY_ROUNDING, effort)?;
         let (at, field) = (fault.at().to_vec(), fault.field);
-        Some((Fault { clause: Clause::Intersect(fault), at, field }, values))
+        Some((Fault { clause: Clause::Intersect(fault), at, field }, frame))
     })
 }
 
@@ -112,11 +112,11 @@ fn copies_fault(
     params: &[Param],
     shape: ShapeId,
     effort: Effort,
-) -> Option<(Fault, ParamValues)> {
-    frames(params).into_iter().find_map(|(values, frame)| {
+) -> Option<(Fault, FrameValues)> {
+    frames(graph, params).into_iter().find_map(|frame| {
         let fault = copies_violation(graph, params, shape, &frame, 1.0, effort)?;
         let (at, field) = (fault.to.to_vec(), fault.field);
-        Some((Fault { clause: Clause::Copies(fault), at, field }, values))
+        Some((Fault { clause: Clause::Copies(fault), at, field }, frame))
     })
 }
 
@@ -127,14 +127,14 @@ fn field_fault(
     shape: ShapeId,
     stated: &Stated,
     effort: Effort,
-) -> Option<(Fault, ParamValues)> {
+) -> Option<(Fault, FrameValues)> {
     if stated.is_empty() {
         return None;
     }
     let corners = Bounds::new(params).of(graph, shape);
-    frames(params).into_iter().find_map(|(values, frame)| {
+    frames(graph, params).into_iter().find_map(|frame| {
         let probe = Probe::new(graph, shape, corners, &frame, effort)?;
-        Some((first_fault(graph, stated, probe, &frame)?, values))
+        Some((first_fault(graph, stated, probe, &frame)?, frame))
     })
 }
 

@@ -1,4 +1,5 @@
-//! Films: surfaces without thickness, where a cut ends flush in the face that it cuts.
+//! Films: surfaces without thickness, where a cut ends flush in the face that it cuts, or where a
+//! formula is 0 and negative nowhere near.
 //!
 //! The difference `max(a, -b)` is 0 where the faces of `a` and `b` coincide, and positive on both
 //! sides: a surface without an inside. Rays hit it, each at its own rounding error. Two pockets
@@ -19,7 +20,7 @@ const LINES: usize = 32;
 /// Evaluations that take about as long as making a tape.
 const PREPARATION: u64 = 50;
 
-/// A shape with a film, although none of its children has one.
+/// A shape with a film, although none of its children has one, if it has children.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Film {
     /// The instance of the shape.
@@ -28,11 +29,12 @@ pub struct Film {
     pub at: Vec<f64>,
 }
 
-/// Searches the scene's combinations of shapes for films, with the params at their defaults. It
-/// takes about `operations` scalar operations at most, for one shape after the other, children
-/// first. Shapes whose arguments depend on a point, and fields that do not expand, are skipped.
-/// Films that are small beside the bounds of all children are missed.
-pub fn films(scene: &Scene, operations: u64) -> Vec<Film> {
+/// Searches the scene's combinations of shapes, and its own formulas, for films, with the params at
+/// their defaults. `is_own` tells whether the scene declares a definition. It takes about
+/// `operations` scalar operations at most, for one shape after the other, children first. Shapes
+/// whose arguments depend on a point, and fields that do not expand, are skipped. Films that are
+/// small beside the bounds of the shape and of all children are missed.
+pub fn films(scene: &Scene, is_own: &dyn Fn(&str) -> bool, operations: u64) -> Vec<Film> {
     let Some(root) = scene.root else { return Vec::new() };
     let mut extract = scene.graph.extract(&[], &[root]);
     let mut bounds = Bounds::new(&scene.params);
@@ -47,7 +49,7 @@ pub fn films(scene: &Scene, operations: u64) -> Vec<Film> {
         if children.iter().any(|child| marred.contains(child)) {
             marred.insert(shape);
         } else if left > 0
-            && may_leave_film(&scene.graph, shape)
+            && (may_leave_film(&scene.graph, shape) || is_formula(&scene.graph, shape, is_own))
             && let Some(at) = film(&mut extract.graph, &mut bounds, copy, &frame, &mut left)
         {
             marred.insert(shape);
@@ -68,6 +70,12 @@ fn may_leave_film(graph: &Graph, id: ShapeId) -> bool {
         && !is_union(graph, shape.formula)
 }
 
+/// True if the scene gives a formula that samples no other shape.
+fn is_formula(graph: &Graph, id: ShapeId, is_own: &dyn Fn(&str) -> bool) -> bool {
+    let shape = graph.shape(id);
+    shape.level == 0 && shape.children.is_empty() && is_own(&shape.definition)
+}
+
 fn is_union(graph: &Graph, formula: NodeId) -> bool {
     let is_least = |id| matches!(graph.node(id), Node::Binary(Binary::Min, ..));
     let is_sample = |id| matches!(graph.node(id), Node::Sample(..));
@@ -76,7 +84,8 @@ fn is_union(graph: &Graph, formula: NodeId) -> bool {
 }
 
 /// A point of a film of the shape. Lines are drawn where the bounds of the shape and of one child
-/// overlap, so that the face of a small cut is not missed.
+/// overlap, so that the face of a small cut is not missed; within its own bounds if it has no
+/// child.
 fn film(
     graph: &mut Graph,
     bounds: &mut Bounds,
@@ -86,7 +95,10 @@ fn film(
 ) -> Option<Vec<f64>> {
     let whole = bounds.of(graph, shape);
     let width = graph.shape(shape).dim.point_type().width();
-    let children = graph.shape(shape).children.clone();
+    let mut children = graph.shape(shape).children.clone();
+    if children.is_empty() {
+        children.push(shape);
+    }
     let windows: Vec<[[f64; 3]; 2]> = children
         .into_iter()
         .filter_map(|child| {

@@ -8,3 +8,4 @@ pub(crate) mod frames;
 pub(crate) mod probe;
 pub(crate) mod rays;
 pub(crate) mod sampling;
+pub(crate) mod suggest;

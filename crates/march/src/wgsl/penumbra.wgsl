@@ -33,11 +33,11 @@ fn limited_step(stride: f32, distance: f32) -> f32 {
     return allowed;
 }
 
-// Call before tracing a ray towards a light.
-fn start_penumbra(light: IncomingLight) {
+// Call before tracing a ray towards a light, with the inverse of the distance to it.
+fn start_penumbra(inverse_distance: f32) {
     clearance = 1e30;
     last_sample = vec2f();
-    inverse_light_distance = light.inverse_distance;
+    inverse_light_distance = inverse_distance;
 }
 
 // The width of the cone at a position of the ray, for a sharpness of 1.

@@ -21,7 +21,7 @@ fn shadow_ray(surface: Surface, ray: Ray, t: f32, light: IncomingLight) -> Ray {
     let lift = max(3.0 * nearness(ray, t), footprint(ray, t));
     let origin = start_at(surface, ray, t, lift);
     if SOFT_SHADOWS {
-        start_penumbra(light);
+        start_penumbra(light.inverse_distance);
     }
     let radius = 0.5 * lift;
     return Ray(origin, radius, light.direction, 0.0, light.distance, ray.epsilon, SHADOW_TOLERANCE, ray.steps);

@@ -107,6 +107,28 @@ pub fn point_light(position: [f64; 3], strength: f64, shadow: Shadow) -> Program
     program
 }
 
+/// A floor at -1 and a ceiling at 1, with a point light close below the ceiling.
+pub fn lamp_at_ceiling(position: [f64; 3], shadow: Shadow) -> Program {
+    let mut program = program(|graph| {
+        let floor = floor_field(graph, -1.0);
+        let (p, one) = (point(graph), graph.number(1.0));
+        let height = graph.swizzle(p, &[1]);
+        let ceiling = graph.sub(one, height);
+        let down = graph.constant(Type::Vec3, &[0.0, -1.0, 0.0]);
+        let nearer = graph.le(floor.distance, ceiling);
+        Field {
+            distance: graph.min(floor.distance, ceiling),
+            gradient: graph.select(nearer, floor.gradient, down),
+        }
+    });
+    look_from(&mut program, [0.0, 0.0, 5.0]);
+    let graph = &mut program.graph;
+    let source = LightSource::Point { position: graph.constant(Type::Vec3, &position) };
+    let color = graph.constant(Type::Vec3, &[1.0; 3]);
+    program.settings.lights = vec![Light { source, color, shadow }];
+    program
+}
+
 /// The sphere and the floor in fog, under a sky.
 pub fn foggy(density: f64) -> Program {
     let mut program = sphere_above_floor();

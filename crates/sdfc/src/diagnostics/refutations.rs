@@ -2,13 +2,17 @@
 
 use std::collections::BTreeMap;
 
-use sdfc_analyze::{Clause, CopiesViolation, ParamValues, Violation, refute, refute_lipschitz};
+use sdfc_analyze::{Clause, CopiesViolation, Violation, refute, refute_lipschitz};
 use sdfc_diagnostics::{Code, Diagnostic, Span};
-use sdfc_graph::ShapeId;
+use sdfc_graph::eval::FrameValues;
+use sdfc_graph::{Param, ParamKind, ShapeId};
 use sdfc_lang::{Claimed, Declared, Elaborated};
 
 use super::origins::Origins;
+use crate::params::degrees;
 
+/// At most this many values of params are shown.
+const MAX_VALUES: usize = 6;
 /// At most this many instances of a declaration are sampled.
 const MAX_SAMPLED: usize = 8;
 /// About how many scalar operations the tests of all declarations may take together: some seconds.
@@ -28,7 +32,7 @@ pub(crate) fn refutations(elaborated: &Elaborated) -> Vec<Diagnostic> {
         if let Some(refuted) = refute(&elaborated.scene, &instances, share).first()
             && let Some(mut error) = refutation(declared, refuted)
         {
-            error = with_params(error, refuted.params);
+            error = with_values(error, elaborated, &refuted.frame);
             if let Some(site) = origins.nearest_call(refuted.shape) {
                 error = error.note_at(site.span, format!("in this `{}`", site.name));
             }
@@ -52,26 +56,53 @@ fn functions(elaborated: &Elaborated) -> Vec<Diagnostic> {
             refute_lipschitz(&elaborated.scene, *value, claim, share)
         })?;
         let message = format!(
-            "this states `lipschitz {}`, but between p = {} and {} the result changes {} times as \
-             much as any argument",
+            "this states `lipschitz {}`, but {} the result changes {} times as much as any argument",
             number(fault.constant),
-            point(&fault.from),
-            point(&fault.to),
+            place(&fault.from, &fault.to),
             number(fault.slope)
         );
         let help = "state the greatest change of the result when no argument changes by more than \
                     1, or remove the clause";
         let error = Diagnostic::error(Code::PROMISE_BROKEN, span, message).help(help);
-        Some(with_params(error, fault.params))
+        Some(with_values(error, elaborated, &fault.frame))
     });
     refuted.collect()
 }
 
-fn with_params(error: Diagnostic, params: ParamValues) -> Diagnostic {
-    match params {
-        ParamValues::Default => error,
-        ParamValues::Low => error.note("with all params at the low ends of their ranges"),
-        ParamValues::High => error.note("with all params at the high ends of their ranges"),
+/// The error with the values that are no defaults.
+fn with_values(error: Diagnostic, elaborated: &Elaborated, frame: &FrameValues) -> Diagnostic {
+    let params = &elaborated.scene.params;
+    let defaults = FrameValues::defaults(params);
+    let pairs = params.iter().zip(frame.params.iter().zip(&defaults.params));
+    let moved = pairs.filter(|(_, (value, default))| value != default);
+    let mut values: Vec<String> = moved
+        .map(|(param, (value, _))| format!("{} = {}", param.name, shown(param, value[0])))
+        .collect();
+    if values.len() > MAX_VALUES {
+        values.truncate(MAX_VALUES);
+        values.push("...".to_owned());
+    }
+    if frame.time != 0.0 {
+        values.push(format!("time = {}", number(frame.time)));
+    }
+    if values.is_empty() { error } else { error.note(format!("with {}", values.join(", "))) }
+}
+
+/// Where two points are: near one of them if they look the same.
+fn place(from: &[f64], to: &[f64]) -> String {
+    let [from, to] = [from, to].map(point);
+    if from == to { format!("near p = {from}") } else { format!("between p = {from} and {to}") }
+}
+
+/// A param's value as a scene writes it.
+fn shown(param: &Param, value: f64) -> String {
+    match param.kind {
+        ParamKind::Angle => format!("{}deg", number(degrees(value))),
+        ParamKind::Number
+        | ParamKind::Int
+        | ParamKind::Bool
+        | ParamKind::Color
+        | ParamKind::Choice => number(value),
     }
 }
 
@@ -100,10 +131,9 @@ fn refutation(declared: &Declared, refuted: &Violation) -> Option<Diagnostic> {
         }
         Clause::Lipschitz { constant, slope, to } => {
             let message = format!(
-                "this states `lipschitz {}`, but between p = {at} and {} the field changes {} \
-                 times as much as p",
+                "this states `lipschitz {}`, but {} the field changes {} times as much as p",
                 number(*constant),
-                point(to),
+                place(&refuted.at, to),
                 number(*slope)
             );
             let help = "state the greatest slope within the bounds, or remove the clause";

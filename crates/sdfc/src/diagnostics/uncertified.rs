@@ -9,6 +9,11 @@ use sdfc_lang::Elaborated;
 
 const SLOWER: &str = "leave it: `auto` then draws the scene by interval tracing, which is slower";
 
+/// Beyond this constant, rays by a divided field take too many steps.
+const MOST_DIVIDED: f64 = 100.0;
+/// Up to this constant, the field of a formula is not known to be a bound already.
+const MODEST: f64 = 4.0;
+
 const FROM_SAMPLES: &str =
     "the constant is 1.2 times the largest slope of some samples, so make sure that it holds";
 
@@ -27,12 +32,9 @@ pub(super) fn help(elaborated: &Elaborated, report: &Report, part: &Uncertified)
             "make the shape before the formula, with arguments that do not depend on `p`; or \
              {SLOWER}"
         ),
-        Reason::Jump(what) if is_own(elaborated, part.shape) => format!(
-            "{}; or write `bound` before the `=` of `{}` if the value never exceeds the distance \
-             to the surface; or {SLOWER}",
-            without_jump(what),
-            shape.definition
-        ),
+        Reason::Jump(what) if is_own(elaborated, part.shape) => {
+            format!("{}; or {}; or {SLOWER}", without_jump(what), as_bound(&shape.definition))
+        }
         Reason::Jump(what) if takes_function => format!("{}; or {SLOWER}", without_jump(what)),
         Reason::Jump(_) => SLOWER.to_owned(),
         Reason::Unbounded(_) | Reason::SteepInPlaces(_) | Reason::Infinite | Reason::NoBounds => {
@@ -51,6 +53,14 @@ pub(super) fn help(elaborated: &Elaborated, report: &Report, part: &Uncertified)
             }
         }
     }
+}
+
+/// The clause for a field that needs no constant.
+fn as_bound(name: &str) -> String {
+    format!(
+        "write `bound` before the `=` of `{name}` if the value never exceeds the distance to the \
+         surface"
+    )
 }
 
 /// A shape that limits another one.
@@ -106,12 +116,23 @@ fn clauses(elaborated: &Elaborated, shape: ShapeId) -> String {
                  if the picture is right, leave it so, or try `--march sphere`, which is faster"
             );
         }
+        Some(SampledSlope::Constant(constant)) if constant > MOST_DIVIDED => {
+            return format!(
+                "{}; a constant of about {constant} would do, but rays take so many more steps \
+                 then that they may not arrive; or {SLOWER}",
+                as_bound(name)
+            );
+        }
         Some(SampledSlope::Constant(constant)) => Some(constant),
         None => None,
     };
     let bounds = bounds.map(|reach| format!("bounds -{reach} .. {reach}"));
     let with_limits = bounds.as_ref().map(|_| ", with limits that contain the shape");
-    let from_samples = constant.map(|_| format!("; {FROM_SAMPLES}"));
+    let from_samples = constant.map(|constant| {
+        let instead =
+            if constant > MODEST { format!("; or {}", as_bound(name)) } else { String::new() };
+        format!("; {FROM_SAMPLES}{instead}")
+    });
     let constant = constant.map(|constant| format!("lipschitz {constant}"));
     let clauses: Vec<String> = bounds.into_iter().chain(constant).collect();
     format!(

@@ -1,7 +1,7 @@
 //! Warnings about what the analyses could not prove, at the calls in the scene.
 
 use rustc_hash::FxHashSet;
-use sdfc_analyze::{CopiesObstacle, Report, copies_obstacle, films};
+use sdfc_analyze::{CopiesObstacle, Film, Report, copies_obstacle, films};
 use sdfc_diagnostics::{Code, Diagnostic, Sources};
 use sdfc_graph::{Dim, ShapeId};
 use sdfc_lang::{Declared, Elaborated, Site};
@@ -49,21 +49,38 @@ pub(crate) fn warnings(
         }
     }
     warnings.extend(elaborated.declared.iter().filter_map(|shape| idle(elaborated, shape)));
-    for film in films(&elaborated.scene, FILM_OPERATIONS) {
+    let is_own =
+        |name: &str| elaborated.declared.iter().any(|declared| declared.definition == name);
+    for film in films(&elaborated.scene, &is_own, FILM_OPERATIONS) {
         let Some(site) = origins.nearest_call(film.shape) else { continue };
         if seen.insert((Code::FILM, site.span)) {
-            let message = format!(
-                "`{}` leaves a film without thickness, for example at {}: two surfaces coincide \
-                 there",
-                site.name,
-                point(&film.at)
-            );
-            let help = "let the shape that cuts reach beyond the face, or let shapes that touch \
-                        overlap";
-            warnings.push(Diagnostic::warning(Code::FILM, site.span, message).help(help));
+            warnings.push(about_film(elaborated, site, &film));
         }
     }
     warnings
+}
+
+fn about_film(elaborated: &Elaborated, site: &Site, film: &Film) -> Diagnostic {
+    let (name, at) = (&site.name, point(&film.at));
+    let is_formula = elaborated.scene.graph.shape(film.shape).children.is_empty();
+    let (message, help) = if is_formula {
+        (
+            format!(
+                "`{name}` is a surface without an inside, for example at {at}: it is 0 there \
+                     and negative nowhere near"
+            ),
+            "give it a thickness: subtract a length from the formula, such as 0.01",
+        )
+    } else {
+        (
+            format!(
+                "`{name}` leaves a film without thickness, for example at {at}: two surfaces \
+                     coincide there"
+            ),
+            "let the shape that cuts reach beyond the face, or let shapes that touch overlap",
+        )
+    };
+    Diagnostic::warning(Code::FILM, site.span, message).help(help)
 }
 
 fn is_planar(elaborated: &Elaborated) -> bool {

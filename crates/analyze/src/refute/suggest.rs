@@ -1,9 +1,12 @@
 //! Clauses that would give a shape without a Lipschitz constant one.
 
 use sdfc_graph::eval::{Dual, Evaluator, FrameValues, Tape};
-use sdfc_graph::{Dim, Expander, Graph, Param, ShapeId};
+use sdfc_graph::{Dim, Expander, Graph, NodeId, Param, ShapeId};
 
 use crate::certify::local_slope::{Region, region, steepest_within};
+use crate::refute::frames::frames;
+use crate::refute::probe::Probe;
+use crate::refute::sampling::Effort;
 
 /// Least half of the edge of the box that is suggested as bounds, and the greatest one.
 const REACHES: [f64; 2] = [2.0, 1024.0];
@@ -21,6 +24,10 @@ const HALVINGS: usize = 24;
 const MARGIN: f64 = 1.2;
 /// A field has no constant if its slope grows by more than this factor near a sample.
 const MOST_GROWTH: f64 = 16.0;
+/// Number of times that pairs of points may refute a suggestion.
+const TRIES: usize = 4;
+/// Budget of the pairs of points at one frame, in scalar operations.
+const PAIR_OPERATIONS: u64 = 1 << 23;
 
 /// Clauses to add to a declaration.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -77,7 +84,36 @@ pub fn suggested_clauses(
         }
     }
     let region = region(&graph, ends, &FrameValues::ranges(params))?;
-    Some(SuggestedClauses { bounds: missing, lipschitz: Some(sampled_slope(&mut field, region)?) })
+    let sampled = sampled_slope(&mut field, region)?;
+    let lipschitz = Some(confirmed(&mut graph, shape, params, ends, sampled));
+    Some(SuggestedClauses { bounds: missing, lipschitz })
+}
+
+/// The constant, or a greater one, if pairs of points refute it at no tested values of the params
+/// and of the time. Jumps have no derivative, but pairs of points find them.
+fn confirmed(
+    graph: &mut Graph,
+    shape: ShapeId,
+    params: &[Param],
+    ends: [NodeId; 2],
+    sampled: SampledSlope,
+) -> SampledSlope {
+    let SampledSlope::Constant(first) = sampled else { return sampled };
+    let mut constant = first;
+    for _ in 0..TRIES {
+        let steeper = frames(graph, params).into_iter().find_map(|frame| {
+            let effort = Effort(PAIR_OPERATIONS);
+            Probe::new(graph, shape, ends, &frame, effort)?.steeper(constant)
+        });
+        match steeper {
+            None => return SampledSlope::Constant(constant),
+            Some((at, _, slope)) if slope > MOST_GROWTH * first => {
+                return SampledSlope::Unlimited(at);
+            }
+            Some((_, _, slope)) => constant = rounded_up(MARGIN * slope),
+        }
+    }
+    SampledSlope::Constant(constant)
 }
 
 /// Half the edge of a cube that contains all samples within the shape, and those next to them;
