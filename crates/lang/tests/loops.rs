@@ -121,10 +121,28 @@ fn loops_can_be_nested() {
 }
 
 #[test]
+fn loops_can_sample_shapes() {
+    let star = "polygon([for k in 0..20: (1 + k % 2) * [cos(k * 18deg), sin(k * 18deg)]])";
+    let among_loops = format!("0.1 * iterate(18, s, fn(t, j) = 0.9 * t + {star}(p.yz - i - j))");
+    // The loops of the formula itself. The star has one, too.
+    for (of_shape, count) in
+        [("sphere(0.5)(p - i)", 1), (&format!("{star}(p.xy - i)"), 1), (&among_loops, 2)]
+    {
+        let looped = format!("iterate(20, 9, fn(s, i) = min(s, {of_shape}))");
+        assert_eq!(loops(&looped), count, "{looped}");
+        let written = looped
+            .replace("iterate(20,", "iterate([for i in 0..20: i + 0 * p.x],")
+            .replace("iterate(18,", "iterate([for j in 0..18: j + 0 * p.x],");
+        for (a, b) in values(&looped).into_iter().zip(values(&written)) {
+            assert!((a - b).abs() <= 1e-9 * (1.0 + b.abs()), "{looped}: {a}, not {b}");
+        }
+    }
+}
+
+#[test]
 fn loops_whose_iterations_differ_are_unrolled() {
     for formula in [
-        // Shapes at points that change, and shapes that change.
-        "iterate(20, 9, fn(s, i) = min(s, sphere(0.5)(p - i)))",
+        // Shapes that change.
         "iterate(20, 9, fn(s, i) = min(s, sphere(0.1 * i)(p)))",
         // A list of shapes, and a list of numbers that depend on the point.
         "iterate([for i in 0..20: sphere(0.1 * i)], 9, fn(s, a) = min(s, a(p)))",
