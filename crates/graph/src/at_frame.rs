@@ -100,6 +100,10 @@ impl AtFrame<'_> {
             inside: side(shape.contract.inside),
             lipschitz: shape.contract.lipschitz.map(|node| self.node(node)),
             bounds: shape.contract.bounds.map(|corners| corners.map(|node| self.node(node))),
+            outer_bounds: shape
+                .contract
+                .outer_bounds
+                .map(|corners| corners.map(|node| self.node(node))),
             ..shape.contract
         };
         let children = shape.children.iter().map(|&child| self.shape(child)).collect();

@@ -181,6 +181,7 @@ impl Ids {
             inside: side(shape.contract.inside),
             lipschitz: shape.contract.lipschitz.map(of),
             bounds: shape.contract.bounds.map(|corners| corners.map(of)),
+            outer_bounds: shape.contract.outer_bounds.map(|corners| corners.map(of)),
             ..shape.contract
         };
         Shape {

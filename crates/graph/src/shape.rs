@@ -50,6 +50,9 @@ pub struct Contract {
     pub is_extended: bool,
     /// Lowest and highest corner of the bounds; `lo > hi` for an empty shape, infinities allowed.
     pub bounds: Option<[NodeId; 2]>,
+    /// A box around the stated bounds for all outer points, if the stated ones depend on one.
+    /// `bounds` is `None` then.
+    pub outer_bounds: Option<[NodeId; 2]>,
     /// True if the formula is `min(sample..., limit)`: each sample may be intersected with its
     /// bounds, and `limit` bounds the distance to every copy that is not sampled from below.
     pub copies: bool,

@@ -84,6 +84,13 @@ fn clauses_are_tested_at_several_times() {
 }
 
 #[test]
+fn stated_bounds_limit_copies_whose_size_depends_on_the_cell() {
+    for shape in ["hex_prism(r: 0.45, h: 0.4 + hash(c))", "cone(r: 0.4, h: 0.4 + hash(c))"] {
+        assert_eq!(codes(&format!("repeat(fn(c) = {shape}, spacing: [1, 0, 1])")), [], "{shape}");
+    }
+}
+
+#[test]
 fn a_bound_needs_no_constant() {
     let text = "solid s() = (length(p) - 1) / (1 + length(p))\ns()";
     assert_eq!(codes(text), [("W0602", 2)]);

@@ -35,7 +35,14 @@ impl Deriver<'_> {
             }
         }
         let zone = self.zone(Query { node: formula, limit, level, dim, above: false });
-        self.closed(id, zone, limit)
+        let zone = self.closed(id, zone, limit);
+        match contract.outer_bounds {
+            Some(outer) if self.range(limit).hi() <= 0.0 => {
+                let outer = Zone::between(self.graph, outer, dim.point_type().width());
+                zone.overlap(self.graph, outer)
+            }
+            Some(_) | None => zone,
+        }
     }
 
     /// True if a shape's field equals the distance for all values of the params. Shapes state that

@@ -3,7 +3,7 @@
 use rustc_hash::FxHashSet;
 use sdfc_diagnostics::{Code as ErrorCode, Diagnostic, Span};
 use sdfc_graph::{
-    Binary, Contract, Graph, MaterialRule, Node, NodeId, Shape, ShapeId, SidePromise, Stage,
+    Binary, Contract, Graph, MaterialRule, Node, NodeId, Range, Shape, ShapeId, SidePromise, Stage,
 };
 
 use super::elaborator::{CallFrame, Elaborator, Env, Outcome, Poison, Within};
@@ -188,9 +188,32 @@ impl<'p> Elaborator<'p> {
             };
             let lo = self.known(lo, f64::NEG_INFINITY);
             let hi = self.known(hi, f64::INFINITY);
-            contract.bounds = Some([lo, hi]).filter(|ends| ends.iter().all(|&e| self.is_early(e)));
+            if self.is_early(lo) && self.is_early(hi) {
+                contract.bounds = Some([lo, hi]);
+            } else {
+                let lo = self.for_all_points(lo, |range| range.lo);
+                let hi = self.for_all_points(hi, |range| range.hi);
+                contract.outer_bounds = Some([lo, hi]);
+            }
         }
         Ok(contract)
+    }
+
+    /// A corner of bounds for all outer points: components that depend on one are replaced by an
+    /// end of their range.
+    fn for_all_points(&mut self, corner: NodeId, end: fn(Range) -> f64) -> NodeId {
+        let width = self.graph.ty(corner).width();
+        let mut components = Vec::with_capacity(width);
+        for lane in 0..width {
+            let component = self.graph.component(corner, lane as u8);
+            components.push(if self.is_early(component) {
+                component
+            } else {
+                let limit = end(self.graph.range(component));
+                self.graph.number(limit)
+            });
+        }
+        self.graph.compose(&components)
     }
 
     fn promise(

@@ -68,9 +68,9 @@ fn march(ray: Ray) -> Trace {
         if !shortened {
             distance = marched_field(ray_point(ray, t));
             record_sample(t, distance);
-            // A ray that starts inside hits at its origin. A small value outside is none: the
-            // field may be flat there.
-            if evaluations == 0u && distance < 0.0 {
+            // A ray that starts inside or on a surface hits at its origin. A small value does not
+            // tell that it does: the field may be flat there.
+            if evaluations == 0u && distance <= 0.0 {
                 return Trace(t, HIT, 1u);
             }
             slope = recent_slope(slope, bracket.outside, t, distance);

@@ -18,9 +18,9 @@ fn trace(ray: Ray) -> Trace {
         let distance = field(ray_point(ray, t));
         record_sample(t, distance);
         let near = tolerance(ray, t);
-        // A ray that starts inside hits at its origin. A small value outside is none: the field may
-        // be flat there.
-        if step == 0u && distance < 0.0 {
+        // A ray that starts inside or on a surface hits at its origin. A small value does not tell
+        // that it does: the field may be flat there.
+        if step == 0u && distance <= 0.0 {
             return Trace(t, HIT, 1u);
         }
         bracket = with_sample(bracket, t, distance);

@@ -64,7 +64,7 @@ pub(super) fn descend<'c, T: Real>(
     traces
 }
 
-/// Ends rays that start inside, or where the field is undefined: bounds do not tell this.
+/// Ends rays that start inside or on a surface, or where the field is undefined: bounds do not tell this.
 fn sample_starts<T: Real>(cells: &Cells<'_>, group: &mut Group<'_, '_, T>) {
     let zero = T::constant(0.0);
     // Camera rays often have one origin.
@@ -81,7 +81,7 @@ fn sample_starts<T: Real>(cells: &Cells<'_>, group: &mut Group<'_, '_, T>) {
         group.traces[index].evaluations += 1;
         if values[point].is_nan() {
             group.finish(index, T::constant(f64::NAN), MISS, None);
-        } else if values[point] < 0.0 {
+        } else if values[point] <= 0.0 {
             group.finish(index, zero, HIT, None);
         }
     }

@@ -35,9 +35,9 @@ impl<T: Real> Walk<T> {
     ) -> Next<T> {
         let zero = T::constant(0.0);
         let is_first = self.outside.is_none() && self.inside.is_none();
-        // A ray that starts inside hits at its origin. A small value outside is none: the field may
-        // be flat there.
-        if is_first && distance < zero {
+        // A ray that starts inside or on a surface hits at its origin. A small value does not tell
+        // that it does: the field may be flat there.
+        if is_first && distance <= zero {
             self.evaluations = 1;
             return Next::Hit(self.t);
         }
