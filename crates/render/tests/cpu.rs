@@ -247,9 +247,9 @@ fn a_soft_shadow_fades_as_the_clearance_says() {
 }
 
 #[test]
-fn a_lamp_is_not_in_the_shadow_of_the_ceiling_above_it() {
+fn a_point_light_is_not_in_the_shadow_of_the_ceiling_above_it() {
     let place = glam::DVec3::new(0.0, 0.9, 0.0);
-    let mut program = common::lamp_at_ceiling(place.to_array(), Shadow::Hard);
+    let mut program = common::light_at_ceiling(place.to_array(), Shadow::Hard);
     let hard = floor_pixels(&program);
     let sharpness = program.graph.number(8.0);
     for light in &mut program.settings.lights {

@@ -85,8 +85,8 @@ struct Walk<T> {
     unproven: bool,
 }
 
-/// The width of a penumbra's cone at a position of a ray, for a sharpness of 1. A light with a place
-/// is a point, so the cone closes there.
+/// The width of a penumbra's cone at a position of a ray, for a sharpness of 1. A light with a
+/// place is a point, so the cone closes there.
 pub(super) fn cone_width<T: Real>(ray: &Ray<T>, along: T, ends_at_light: bool) -> T {
     if ends_at_light { along * (T::constant(1.0) - along.div(ray.t_max)) } else { along }
 }

@@ -108,7 +108,7 @@ pub fn point_light(position: [f64; 3], strength: f64, shadow: Shadow) -> Program
 }
 
 /// A floor at -1 and a ceiling at 1, with a point light close below the ceiling.
-pub fn lamp_at_ceiling(position: [f64; 3], shadow: Shadow) -> Program {
+pub fn light_at_ceiling(position: [f64; 3], shadow: Shadow) -> Program {
     let mut program = program(|graph| {
         let floor = floor_field(graph, -1.0);
         let (p, one) = (point(graph), graph.number(1.0));

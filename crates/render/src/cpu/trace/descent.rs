@@ -64,7 +64,8 @@ pub(super) fn descend<'c, T: Real>(
     traces
 }
 
-/// Ends rays that start inside or on a surface, or where the field is undefined: bounds do not tell this.
+/// Ends rays that start inside or on a surface, or where the field is undefined: bounds do not tell
+/// this.
 fn sample_starts<T: Real>(cells: &Cells<'_>, group: &mut Group<'_, '_, T>) {
     let zero = T::constant(0.0);
     // Camera rays often have one origin.
