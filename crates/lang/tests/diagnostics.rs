@@ -199,6 +199,8 @@ fn wrong_operands_are_reported() {
 fn wrong_uses_of_the_point_are_reported() {
     assert_findings!(all(&[
         "sphere(p.x)",
+        "length(p) - 1.0",
+        "max(p.x * p.x + p.y * p.y, abs(p.z)) - [1, 2].x\nsphere(1) - p.x",
         "fn f(a) = a + p.y\nsphere(f(1))",
         "solid a(r = p.x) bounds -p..p\n lipschitz p.x\n = length(p) - r\na()",
         "sphere(1).color(fn(q) = mix(#fff, #000, p.y))",

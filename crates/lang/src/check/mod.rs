@@ -33,6 +33,7 @@ mod coerce;
 mod decl;
 mod expr;
 mod foreign;
+mod formula;
 mod iterate;
 pub(crate) mod kernel;
 mod lambda;

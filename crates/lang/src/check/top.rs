@@ -302,6 +302,12 @@ impl<'a> Checker<'a> {
     }
 
     fn drawing(&mut self, e: &'a ast::Expr) {
+        if self.is_formula_of_point(e) {
+            let message = "a formula of `p` is a shape only within a declaration";
+            let help = "write `solid name() = ` before it, and `name()` in the next line";
+            self.report(Diagnostic::error(Code::NO_POINT, e.span, message).help(help));
+            return;
+        }
         let value = self.infer(e);
         let found = match &value.ty {
             Type::Error => return,

@@ -8,8 +8,8 @@
 // darker and wider. The position of the least ratio remains, so the ratio is taken from an estimate
 // of the distance there.
 //
-// A light with a place is a point, so the cone of its penumbra closes there again. Otherwise a light
-// would be in the shadow of the ceiling above it, and of its own shade.
+// A light with a place is a point, so the cone of its penumbra closes there again. Otherwise a
+// light would be in the shadow of the ceiling above it, and of its own shade.
 
 // True if the current ray leads to a light with a soft shadow.
 var<private> records_clearance: bool;

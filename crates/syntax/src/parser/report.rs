@@ -164,6 +164,10 @@ impl Parser<'_> {
             (TokenKind::Eq, _) if self.peek(1).kind == TokenKind::Greater => {
                 Some("a function without a name is written fn(x) = x")
             }
+            (TokenKind::Eq, _) if self.follows_component() => Some(
+                "values do not change; make a new vector of components: \
+                 `let b = [c.x, a.y, c.y]`",
+            ),
             (TokenKind::Eq, _) => Some("equality is written `==`; `let a = 1` names a value"),
             (TokenKind::Else, _) => Some("`else` follows the `}` of an `if`"),
             _ => None,
@@ -172,6 +176,12 @@ impl Parser<'_> {
 
     fn follows(&self, kind: TokenKind) -> bool {
         self.previous().is_some_and(|previous| previous.kind == kind)
+    }
+
+    /// True behind a component, as in `a.x`.
+    fn follows_component(&self) -> bool {
+        let before = self.at.checked_sub(2).and_then(|at| self.tokens.get(at));
+        self.follows(TokenKind::Name) && before.is_some_and(|token| token.kind == TokenKind::Dot)
     }
 
     /// Returns the diagnostic "expected ...", at the next token or, if the line ended too early,
