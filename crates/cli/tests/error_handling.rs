@@ -303,7 +303,10 @@ fn names_of_openscad_are_answered() {
 #[test]
 fn copies_without_limits_are_cut() {
     let scene = |cut: &str| {
-        format!("repeat(fn(c) = star(5, r: 0.1 + 0.1 * hash(1, c)){cut}, spacing: 1)\n")
+        format!(
+            "region wave(k: number) = p.y - 0.1 * k * sin(p.x)\n\
+             repeat(fn(c) = wave(hash(1, c)){cut}, spacing: 1)\n"
+        )
     };
     wrong(&scene(""), &["cut them with `& circle(0.2)`"]);
     let folder = folder(&[]);

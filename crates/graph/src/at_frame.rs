@@ -9,7 +9,7 @@ use crate::eval::FrameValues;
 use crate::graph::Graph;
 use crate::node::{Node, NodeId, ShapeId};
 use crate::scene::Scene;
-use crate::shape::{Arg, Contract, Shape, SidePromise};
+use crate::shape::{Arg, Shape};
 
 impl Scene {
     /// Returns the drawn shapes at a frame: a graph of their own and the root in it. It has no
@@ -91,21 +91,7 @@ impl AtFrame<'_> {
         }
         let shape = self.graph.shape(old).clone();
         let formula = self.node(shape.formula);
-        let side = |SidePromise { exact, bound }: SidePromise| SidePromise {
-            exact: exact.map(|node| self.node(node)),
-            bound: bound.map(|node| self.node(node)),
-        };
-        let contract = Contract {
-            outside: side(shape.contract.outside),
-            inside: side(shape.contract.inside),
-            lipschitz: shape.contract.lipschitz.map(|node| self.node(node)),
-            bounds: shape.contract.bounds.map(|corners| corners.map(|node| self.node(node))),
-            outer_bounds: shape
-                .contract
-                .outer_bounds
-                .map(|corners| corners.map(|node| self.node(node))),
-            ..shape.contract
-        };
+        let contract = shape.contract.map(|node| self.node(node));
         let children = shape.children.iter().map(|&child| self.shape(child)).collect();
         // The old shape as an argument keeps different shapes apart.
         let args = vec![Arg::Shape(old)];

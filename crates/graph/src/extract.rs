@@ -9,7 +9,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use crate::graph::{Graph, LipschitzClaim};
 use crate::ids::{IdMap, IdSet};
 use crate::node::{LoopId, Node, NodeId, ShapeId, TableId};
-use crate::shape::{Arg, Contract, MaterialRule, Shape, SidePromise};
+use crate::shape::{Arg, MaterialRule, Shape};
 
 /// A copy of a part of a graph. Ids have the same order as in the original.
 #[derive(Clone, Debug)]
@@ -172,18 +172,7 @@ impl Ids {
     /// The shape with new ids.
     fn in_shape(&self, shape: &Shape) -> Shape {
         let of = |id: NodeId| self.node(id);
-        let side = |SidePromise { exact, bound }: SidePromise| SidePromise {
-            exact: exact.map(of),
-            bound: bound.map(of),
-        };
-        let contract = Contract {
-            outside: side(shape.contract.outside),
-            inside: side(shape.contract.inside),
-            lipschitz: shape.contract.lipschitz.map(of),
-            bounds: shape.contract.bounds.map(|corners| corners.map(of)),
-            outer_bounds: shape.contract.outer_bounds.map(|corners| corners.map(of)),
-            ..shape.contract
-        };
+        let contract = shape.contract.map(of);
         Shape {
             definition: shape.definition.clone(),
             dim: shape.dim,
@@ -225,11 +214,8 @@ fn sampled_shape(node: Node) -> Option<ShapeId> {
 
 /// Adds the nodes and shapes that a shape mentions.
 fn shape_dependencies(shape: &Shape, nodes: &mut Vec<NodeId>, shapes: &mut Vec<ShapeId>) {
-    let Contract { outside, inside, lipschitz, bounds, .. } = shape.contract;
     nodes.push(shape.formula);
-    nodes.extend([outside, inside].into_iter().flat_map(|side| [side.exact, side.bound]).flatten());
-    nodes.extend(lipschitz);
-    nodes.extend(bounds.into_iter().flatten());
+    nodes.extend(shape.contract.nodes());
     nodes.extend(shape.intersect.as_flattened());
     match shape.material {
         MaterialRule::Weighted(node) => nodes.push(node),

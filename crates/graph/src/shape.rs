@@ -58,6 +58,32 @@ pub struct Contract {
     pub copies: bool,
 }
 
+impl Contract {
+    /// The nodes of all clauses.
+    pub(crate) fn nodes(&self) -> impl Iterator<Item = NodeId> {
+        let sides = [self.outside, self.inside].map(|side| [side.exact, side.bound]);
+        let corners = [self.bounds, self.outer_bounds];
+        let single = sides.into_iter().flatten().chain([self.lipschitz]).flatten();
+        single.chain(corners.into_iter().flatten().flatten())
+    }
+
+    /// The same clauses over other nodes.
+    pub(crate) fn map(&self, map: impl Fn(NodeId) -> NodeId) -> Self {
+        let side = |SidePromise { exact, bound }: SidePromise| SidePromise {
+            exact: exact.map(&map),
+            bound: bound.map(&map),
+        };
+        Self {
+            outside: side(self.outside),
+            inside: side(self.inside),
+            lipschitz: self.lipschitz.map(&map),
+            bounds: self.bounds.map(|corners| corners.map(&map)),
+            outer_bounds: self.outer_bounds.map(|corners| corners.map(&map)),
+            ..*self
+        }
+    }
+}
+
 /// The origin of an instance's material. Fields are in the order of `MaterialField::ALL`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum MaterialRule {

@@ -89,7 +89,7 @@ pub fn suggested_clauses(
     Some(SuggestedClauses { bounds: missing, lipschitz })
 }
 
-/// The constant, or a greater one, if pairs of points refute it at no tested values of the params
+/// The constant, raised until pairs of points refute it at none of the tested values of the params
 /// and of the time. Jumps have no derivative, but pairs of points find them.
 fn confirmed(
     graph: &mut Graph,

@@ -199,7 +199,7 @@ pub(crate) const ROWS: &[Row] = rows! {
         "hsl" Builtin::Color(K::Hsl), "hsl(h, s, l, a: 1)", "A colour from hue, saturation and lightness, as in CSS. The hue is a number of turns or an angle: 0 is red.", "hsl(210deg, 0.6, 0.5)";
         "oklch" Builtin::Color(K::Oklch), "oklch(l, c, h, a: 1)", "A colour from perceptual lightness, chroma and hue (Oklch, Ottosson 2020); h is an angle.", "oklch(0.7, 0.15, 150deg)";
         "hard" Builtin::Hard, "hard", "A hard shadow, for a light's `shadow`.", "hard";
-        "soft" Builtin::Soft, "soft(sharpness)", "A soft shadow, for a light's `shadow`: the penumbra is 1 / sharpness of the distance to the occluder wide. Beside a shape whose field is less than the distance, such as a blend, it is wider. Towards a light with a position it narrows again.", "soft(8)";
+        "soft" Builtin::Soft, "soft(sharpness)", "A soft shadow, for a light's `shadow`: the penumbra is 1 / sharpness of the distance to the occluder wide. Beside a shape whose field is less than the distance, such as a blend, it is wider.", "soft(8)";
     }
     "text and outlines" {
         "str" Builtin::Str, "str(a, ...)", "Strings and numbers, joined to one string. Numbers have at most six digits after the decimal point. All must be known when the scene compiles.", "str(\"No. \", 7)";
