@@ -90,7 +90,8 @@ pub(super) fn shadertoy(
 ) -> Result<WrittenModule, Error> {
     let target = Target::Shadertoy;
     if find_function(module, stubs::IMAGE).is_none() {
-        return Err(Error::Unsupported { target, what: "text but that of a whole picture" });
+        let what = "field or march: it takes whole pictures only, as `--emit render` writes them";
+        return Err(Error::Unsupported { target, what });
     }
     let written = glsl(target, back::glsl::Version::new_gles(300), module, info, comment)?;
     let Code::Text(text) = &written.code else { return Ok(written) };
