@@ -36,6 +36,7 @@ mod prepare;
 mod refute;
 mod report;
 mod reroll;
+mod sampled_bounds;
 mod shapes;
 mod unit_slope;
 
@@ -56,3 +57,4 @@ pub use refute::suggest::{SampledSlope, SuggestedClauses, rounded_up, suggested_
 pub use report::{Lipschitz, Report, ShapeReport};
 pub use reroll::rewrite::RerolledLoop;
 pub use reroll::strategy::LoopStrategy;
+pub use sampled_bounds::sampled_bounds;

@@ -1,11 +1,15 @@
 //! The bounding box of a scene, as nodes that are evaluated for each frame.
 
 use rustc_hash::FxHashSet;
+use sdfc_analyze::sampled_bounds;
 use sdfc_graph::eval::{FrameValues, evaluate_frame};
 use sdfc_graph::{Bounds, Graph, Node, NodeId, Scene, ShapeId, bounds, reachable_where};
 
 /// The largest number of shapes that are looked at for the bounded parts of a scene.
 const MOST_PARTS: usize = 1024;
+
+/// The largest number of parts without bounds that are sampled.
+const MOST_SAMPLED: usize = 8;
 
 /// Lowest and highest corner of a box.
 pub(crate) type Corners = [[f64; 3]; 2];
@@ -34,8 +38,9 @@ impl DerivedBounds {
 }
 
 /// Returns the corners of what a fitted camera looks at, at one frame alone: of the bounded parts
-/// if the scene has no limit and there are any, else of everything. Corners for one frame may be
-/// tighter than those that hold for all values of the params.
+/// if the scene has no limit and there are any, else of the parts that samples find an end of, else
+/// of everything. Corners for one frame may be tighter than those that hold for all values of the
+/// params.
 pub(crate) fn focus_at_one_frame(scene: &Scene, frame: &FrameValues) -> Option<Corners> {
     let (mut graph, root) = scene.shapes_at(frame)?;
     let mut bounds = Bounds::new(&[]);
@@ -44,8 +49,9 @@ pub(crate) fn focus_at_one_frame(scene: &Scene, frame: &FrameValues) -> Option<C
         return Some(whole);
     }
     let mut focus: Option<Corners> = None;
+    let mut open = Vec::new();
     let mut seen = FxHashSet::default();
-    let mut left = joined(&graph, root);
+    let mut left = vec![root];
     while let Some(shape) = left.pop() {
         if !seen.insert(shape) || seen.len() > MOST_PARTS {
             continue;
@@ -54,8 +60,17 @@ pub(crate) fn focus_at_one_frame(scene: &Scene, frame: &FrameValues) -> Option<C
         if is_finite(&corners) {
             focus = Some(focus.map_or(corners, |focus| hull(focus, corners)));
         } else {
-            left.extend(joined(&graph, shape));
+            let parts = joined(&graph, shape);
+            if parts.is_empty() {
+                open.push(shape);
+            }
+            left.extend(parts);
         }
+    }
+    if focus.is_none() {
+        open.truncate(MOST_SAMPLED);
+        let sampled = open.into_iter().filter_map(|shape| sampled_bounds(&mut graph, shape, frame));
+        focus = sampled.reduce(hull);
     }
     Some(focus.unwrap_or(whole))
 }

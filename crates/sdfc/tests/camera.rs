@@ -19,6 +19,22 @@ fn a_setting_may_sample_a_distance() {
 }
 
 #[test]
+fn a_fitted_camera_shows_the_whole_of_a_formula_without_bounds() {
+    // A tanglecube, which reaches from -2.27 to 2.27.
+    let tangle = "solid tangle() = { let q = p * p; dot(q, q) - 5 * (q.x + q.y + q.z) + 11.8 }\n";
+    for (rest, middle) in [("tangle()", 0.0), ("tangle().translate(y: 3)\nplane()", 3.0)] {
+        let scene = compiled(Compiler::new(), &format!("{tangle}{rest}"));
+        assert!(scene.bounds_at(&scene.defaults()).unwrap()[1][0].is_infinite());
+        let fitted = pose(&scene);
+        let about = format!("box(4.54).translate(y: {middle})");
+        let to_box = pose(&compiled(Compiler::new(), &about));
+        assert!(fitted.target.distance(to_box.target) < 0.5, "{fitted:?}");
+        let [away, of_box] = [fitted, to_box].map(|pose| pose.eye.distance(pose.target));
+        assert!((1.0..1.25).contains(&(away / of_box)), "{away} and {of_box}");
+    }
+}
+
+#[test]
 fn a_fitted_camera_does_not_depend_on_what_may_change() {
     // The bounds of these scenes are wider if they hold for all values of the numbers.
     for text in [
