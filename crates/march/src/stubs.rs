@@ -78,8 +78,7 @@ pub const IMAGE: &str = "image";
 /// supplies it; its calls are dropped if no shadow is soft.
 pub const RECORD_SAMPLE: &str = "record_sample";
 /// `fn record_slope(square: f32)`, which takes the squared length of each gradient. No scene
-/// supplies it; its calls are dropped if there is neither ambient occlusion nor a
-/// soft shadow.
+/// supplies it; its calls are dropped if there is neither ambient occlusion nor a soft shadow.
 pub const RECORD_SLOPE: &str = "record_slope";
 /// `fn record_gap()`, which methods call for each stretch of a ray that they pass without a proof
 /// that it is free. No scene supplies it; its calls are dropped if pixels do not tell
