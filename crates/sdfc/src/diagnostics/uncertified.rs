@@ -11,7 +11,7 @@ const SLOWER: &str = "leave it: `auto` then draws the scene by interval tracing,
 
 /// Beyond this constant, rays by a divided field take too many steps.
 const MOST_DIVIDED: f64 = 100.0;
-/// Up to this constant, the field of a formula is not known to be a bound already.
+/// Above this constant, the help offers `bound` as well.
 const MODEST: f64 = 4.0;
 
 const FROM_SAMPLES: &str =
