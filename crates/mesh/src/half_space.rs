@@ -45,6 +45,8 @@ impl Share {
 fn part_below(center: f64, slopes: &[f64]) -> f64 {
     match slopes.len() {
         0 => f64::from(u8::from(center < 0.0)),
+        // Below 0 everywhere. Far from 0, the powers would be too large to cancel each other.
+        _ if center <= -slopes.iter().sum::<f64>() => 1.0,
         count => truncated(center, slopes, count as i32).clamp(0.0, 1.0),
     }
 }
@@ -76,6 +78,15 @@ fn truncated(center: f64, slopes: &[f64], power: i32) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn an_error_far_above_the_slopes_tells_nothing() {
+        // The bounds of a polygon with many corners over a large box.
+        let Share { inside, .. } = Share::of(5e8, [7e-8, 2e-8, -1e-15], 2.5e9);
+        assert_eq!([inside.lo(), inside.hi()], [0.0, 1.0]);
+        let Share { inside, .. } = Share::of(-5e8, [7e-8, 2e-8, 3e-8], 1.0);
+        assert!(inside.lo() > 0.99, "{inside:?}");
+    }
 
     #[test]
     fn the_part_below_a_plane_is_right() {
