@@ -45,8 +45,7 @@ impl Share {
 fn part_below(center: f64, slopes: &[f64]) -> f64 {
     match slopes.len() {
         0 => f64::from(u8::from(center < 0.0)),
-        // Below 0 everywhere. Far from 0, the powers would be too large to cancel each other.
-        _ if center <= -slopes.iter().sum::<f64>() => 1.0,
+        _ if is_below(center, slopes) => 1.0,
         count => truncated(center, slopes, count as i32).clamp(0.0, 1.0),
     }
 }
@@ -55,8 +54,15 @@ fn part_below(center: f64, slopes: &[f64]) -> f64 {
 fn density(center: f64, slopes: &[f64]) -> f64 {
     match slopes.len() {
         0 => 0.0,
+        _ if is_below(center, slopes) => 0.0,
         count => truncated(center, slopes, count as i32 - 1).max(0.0),
     }
+}
+
+/// True if `center + slopes * t` is below 0 everywhere. Far from 0, the powers of [`truncated`]
+/// would be too large to cancel each other.
+fn is_below(center: f64, slopes: &[f64]) -> bool {
+    center <= -slopes.iter().sum::<f64>()
 }
 
 /// Returns the sum of truncated powers over the corners of a cube, divided by the factorial of the
@@ -84,8 +90,9 @@ mod tests {
         // The bounds of a polygon with many corners over a large box.
         let Share { inside, .. } = Share::of(5e8, [7e-8, 2e-8, -1e-15], 2.5e9);
         assert_eq!([inside.lo(), inside.hi()], [0.0, 1.0]);
-        let Share { inside, .. } = Share::of(-5e8, [7e-8, 2e-8, 3e-8], 1.0);
+        let Share { inside, density } = Share::of(-5e8, [7e-8, 2e-8, 3e-8], 1.0);
         assert!(inside.lo() > 0.99, "{inside:?}");
+        assert_eq!(density, 0.0);
     }
 
     #[test]
