@@ -14,16 +14,18 @@ fn irradiance(normal: vec3f) -> vec3f {
 fn background_color(direction: vec3f) -> vec3f {
     var color = view.background;
     if SKY {
-        // The colour changes fastest near the horizon.
-        let low = 1.0 - saturate(direction.y);
-        color = mix(view.zenith, view.horizon, low * low * low);
+        var far = view.zenith;
+        var height = direction.y;
         if GROUND {
-            if direction.y < 0.0 {
-                // Under a sky, the background is the ground.
-                let high = 1.0 - saturate(-direction.y);
-                color = mix(view.background, view.horizon, high * high * high);
-            }
+            // Under a sky, the background is the ground. No branch: with parallel rays, its
+            // condition is the same for all pixels, and Mesa's software driver (lavapipe 22.3)
+            // then compiles the shader again at each dispatch.
+            far = select(view.zenith, view.background, direction.y < 0.0);
+            height = abs(direction.y);
         }
+        // The colour changes fastest near the horizon.
+        let low = 1.0 - saturate(height);
+        color = mix(far, view.horizon, low * low * low);
     }
     if ENVIRONMENT {
         color = radiance(direction, vec3f());
