@@ -9,6 +9,7 @@ use crate::analytic::operands::Operands;
 use crate::analytic::queries::{ray_functions, ray_queries};
 use crate::analytic::split::split_analytic;
 use crate::certify::conservative::conservative_field;
+use crate::certify::faithful::is_faithful;
 use crate::certify::inexact::inexact_operators;
 use crate::certify::quality::Qualities;
 use crate::cost::{Cost, cost};
@@ -119,6 +120,10 @@ fn flatten(
         let undivided = expander.field(graph, root, point)?;
         flat.push(graph.max(undivided, whole));
     }
+    program.falls_behind = flat.len() == count
+        && !uses_loops
+        && has_soft_shadows(&program.settings)
+        && !is_faithful(graph, &qualities, root);
     let with_estimate = flat.len();
     if has_material {
         flat.extend(expander.material(graph, root, point)?);
@@ -215,8 +220,11 @@ fn materials(
 
 /// True if an estimate of the distance serves a picture better than a lower bound.
 fn uses_estimate(settings: &Settings) -> bool {
-    let is_soft = |light: &Light| matches!(light.shadow, Shadow::Soft(_));
-    settings.occlusion.is_some() || settings.lights.iter().any(is_soft)
+    settings.occlusion.is_some() || has_soft_shadows(settings)
+}
+
+fn has_soft_shadows(settings: &Settings) -> bool {
+    settings.lights.iter().any(|light: &Light| matches!(light.shadow, Shadow::Soft(_)))
 }
 
 /// True if the field of a shape is divided by a constant that can be large.

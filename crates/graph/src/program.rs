@@ -74,6 +74,9 @@ pub struct Program {
     /// without its divisions by Lipschitz constants, but nowhere less than it. `None` if that is
     /// `distance` itself, if nothing needs it, or if similar operands are loops.
     pub estimate: Option<NodeId>,
+    /// True if `distance` may fall far behind the distance outside, and soft shadows should follow
+    /// its gradients. False if there is an estimate, or if similar operands are loops.
+    pub falls_behind: bool,
     /// Gradient of `distance`, a vector of the point's type.
     pub gradient: Option<NodeId>,
     /// What a pixel of a planar picture shows: linear red, green and blue, and the distance. The

@@ -67,6 +67,8 @@ pub struct Features {
     /// The field is divided by Lipschitz constants; soft shadows and ambient occlusion use what it
     /// is without.
     pub estimated: bool,
+    /// The field falls behind the distance for other reasons; soft shadows follow its gradients.
+    pub projected: bool,
     /// The scene's functions contain loops.
     pub loops: bool,
 }
@@ -89,7 +91,7 @@ impl Features {
     }
 
     /// The overrides of `features.wgsl` and their values.
-    pub fn overrides(self) -> [(&'static str, bool); 33] {
+    pub fn overrides(self) -> [(&'static str, bool); 34] {
         // Destructured so that a new feature does not compile until it is handled here.
         let Self {
             planar: _,
@@ -121,6 +123,7 @@ impl Features {
             records_gaps,
             loose,
             estimated,
+            projected,
             loops,
         } = self;
         [
@@ -156,6 +159,7 @@ impl Features {
             ("RECORDS_GAPS", records_gaps),
             ("LOOSE", loose),
             ("ESTIMATED", estimated),
+            ("PROJECTED", projected && soft_shadows),
             ("HAS_LOOPS", loops),
         ]
     }

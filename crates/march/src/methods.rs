@@ -131,13 +131,10 @@ pub struct MethodDefinition {
 }
 
 impl MethodDefinition {
-    /// The source files of the method: those that it calls, then its own.
+    /// The source files of the method: those that it or its soft shadows may call, then its own.
     pub(crate) fn files(&self) -> Vec<&'static str> {
-        const PRE_INTERSECTION: [&str; 2] =
-            [include_str!("wgsl/analytic.wgsl"), include_str!("wgsl/pre_intersection.wgsl")];
-        let mut files = if self.pre_intersects { PRE_INTERSECTION.to_vec() } else { Vec::new() };
-        files.push(self.source);
-        files
+        let analytic = include_str!("wgsl/analytic.wgsl");
+        vec![analytic, include_str!("wgsl/pre_intersection.wgsl"), self.source]
     }
 
     /// Returns true if the method's own file calls the function of that name, one of

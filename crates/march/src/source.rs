@@ -138,9 +138,10 @@ pub fn source_with(
 /// Returns the source of a ray method alone, for a shader of the embedder's. Its entry point is
 /// there only to keep `trace` and `intersect`.
 pub fn ray_source(method: &MethodDefinition) -> String {
-    let [field, _] = FieldSource::Scene.files();
+    let [field, gradient] = FieldSource::Scene.files();
     let features = include_str!("wgsl/features.wgsl");
-    let mut files = vec![features, field, RANGES, RAY, BRACKET, PENUMBRA, SAMPLING];
+    let gradient = method.gradient.unwrap_or(gradient);
+    let mut files = vec![features, field, gradient, RANGES, RAY, BRACKET, PENUMBRA, SAMPLING];
     files.extend(method.files());
     files.extend([include_str!("wgsl/intersect.wgsl"), include_str!("wgsl/anchor.wgsl")]);
     files.join("\n")

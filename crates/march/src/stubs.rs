@@ -74,8 +74,8 @@ pub const LOAD_HEADLIGHT: &str = "load_headlight";
 /// `fn image(...) -> vec4f` of [`Form::Shadertoy`](crate::Form::Shadertoy), which the GLSL entry
 /// point calls.
 pub const IMAGE: &str = "image";
-/// `fn record_sample(t: f32, distance: f32)`, which methods call for each sample of a ray. No scene
-/// supplies it; its calls are dropped if no shadow is soft.
+/// `fn record_sample(ray: Ray, t: f32, distance: f32)`, which methods call for each sample of a
+/// ray. No scene supplies it; its calls are dropped if no shadow is soft.
 pub const RECORD_SAMPLE: &str = "record_sample";
 /// `fn record_slope(square: f32)`, which takes the squared length of each gradient. No scene
 /// supplies it; its calls are dropped if there is neither ambient occlusion nor a soft shadow.

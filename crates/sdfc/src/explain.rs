@@ -192,6 +192,7 @@ pub(crate) fn feature_names(features: Features) -> Vec<String> {
         records_gaps: _,
         loose: _,
         estimated: _,
+        projected: _,
         loops: _,
     } = features;
     let names = [

@@ -8,6 +8,7 @@ pub(crate) mod components;
 pub(crate) mod conservative;
 pub(crate) mod corner;
 pub(crate) mod descent;
+pub(crate) mod faithful;
 pub(crate) mod inexact;
 pub(crate) mod lipschitz;
 pub(crate) mod local_slope;

@@ -73,6 +73,7 @@ impl<'p> PictureLinker<'p> {
         features.records_gaps = writes_pixels && method.calls(stubs::RECORD_GAP);
         features.parallel = parallel.unwrap_or(features.parallel);
         features.estimated &= form != Form::Normals;
+        features.projected &= form != Form::Normals;
         let mut bindings = analytic_bindings(program, features);
         let steps = features.steps() && !features.analytic;
         if steps || features.occlusion {

@@ -58,6 +58,7 @@ pub(super) fn features(program: &Program, method: Option<&MethodDefinition>) -> 
         fog_color: settings.fog.is_some_and(|fog| fog.color.is_some()),
         exposure: settings.exposure.is_some_and(|exposure| exposure.factor.is_some()),
         estimated: program.estimate.is_some(),
+        projected: program.falls_behind,
         neutral_tone: settings.exposure.is_some_and(|it| it.tone == Tone::Neutral),
         film_tone: settings.exposure.is_some_and(|it| it.tone == Tone::Film),
         parallel: settings.is_parallel(),

@@ -26,7 +26,7 @@ fn trace(ray: Ray) -> Trace {
             stride = radius;
             continue;
         }
-        record_sample(next, distance);
+        record_sample(ray, next, distance);
         // Beside a plane the distance r falls by a constant slope s along the ray; the sphere that
         // touches this one has the radius r (1 - s) / (1 + s).
         var next_radius = 0.0;

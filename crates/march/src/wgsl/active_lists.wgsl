@@ -37,9 +37,8 @@ var<private> inactive_distance: f32 = NOTHING_INACTIVE;
 var<private> selects_by_cell: bool;
 var<private> exact_up_to: f32;
 
-// The ray whose clearance is recorded, and the clearance from which on all light arrives.
+// The ray whose clearance is recorded.
 var<private> recorded_ray: Ray;
-var<private> full_light: f32;
 
 var<private> cells: Cells;
 

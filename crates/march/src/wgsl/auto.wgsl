@@ -108,7 +108,7 @@ fn march(ray: Ray, end: f32) -> Trace {
             slope = -1.0;
             continue;
         }
-        record_sample(t, distance);
+        record_sample(ray, t, distance);
         let gain = select(-1.0, (distance - last.y) / stride, stride > 0.0);
         if abs(distance) < hit && small_is_near() {
             return Trace(t + distance / max(-gain, MIN_FINAL_SLOPE), HIT, step + 1u);

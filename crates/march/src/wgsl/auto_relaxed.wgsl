@@ -31,7 +31,7 @@ fn trace(ray: Ray) -> Trace {
             slope = -1.0;
             continue;
         }
-        record_sample(next, distance);
+        record_sample(ray, next, distance);
         if stride > 0.0 {
             slope = mix(slope, (distance - radius) / stride, SLOPE_WEIGHT);
         }

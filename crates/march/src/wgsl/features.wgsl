@@ -59,5 +59,7 @@ override LOOSE: bool;
 // The field is divided by Lipschitz constants; soft shadows and ambient occlusion use what it is
 // without.
 override ESTIMATED: bool;
+// The field falls behind the distance elsewhere; soft shadows follow its gradients.
+override PROJECTED: bool;
 // The scene's functions contain loops.
 override HAS_LOOPS: bool;

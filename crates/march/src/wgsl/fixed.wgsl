@@ -12,7 +12,7 @@ fn trace(ray: Ray) -> Trace {
     var crossed = false;
     for (var step = 0u; step < ray.steps; step++) {
         let distance = field(ray_point(ray, t));
-        record_sample(t, distance);
+        record_sample(ray, t, distance);
         let inside = distance < 0.0;
         // A ray that starts inside hits at its origin; so does a ray whose bracket has closed on a
         // jump.

@@ -67,7 +67,7 @@ fn march(ray: Ray) -> Trace {
     while evaluations < budget {
         if !shortened {
             distance = marched_field(ray_point(ray, t));
-            record_sample(t, distance);
+            record_sample(ray, t, distance);
             // A ray that starts inside or on a surface hits at its origin. A small value does not
             // tell that it does: the field may be flat there.
             if evaluations == 0u && distance <= 0.0 {

@@ -15,10 +15,14 @@ fn record_slope(square: f32) {
 }
 
 // How much the field falls behind the distance near the last surface: the slope there, if that is
-// flatter than a distance. An estimate of the distance needs no correction.
+// flatter than a distance. An estimate of the distance and a way along gradients need no
+// correction.
 fn flatness() -> f32 {
     var flatness = select(1.0, slope, slope < STEEP);
     if ESTIMATED {
+        flatness = 1.0;
+    }
+    if PROJECTED {
         flatness = 1.0;
     }
     return flatness;

@@ -92,9 +92,7 @@ fn picture(pixel: vec2u) -> Pixel {
     loop {
         if SOFT_SHADOWS {
             records_clearance = lights_done > 0u && view.lights[max(lights_done, 1u) - 1u].shadow == SHADOW_SOFT;
-            if CULLED_BY_CELL {
-                full_light = 1.0 / view.lights[max(lights_done, 1u) - 1u].sharpness;
-            }
+            full_light = 1.0 / view.lights[max(lights_done, 1u) - 1u].sharpness;
         }
         var found: Trace;
         if CULLED {

@@ -25,7 +25,7 @@ fn trace(ray: Ray) -> Trace {
             relaxation = 1.0;
             continue;
         }
-        record_sample(next, distance);
+        record_sample(ray, next, distance);
         t = next;
         radius = distance;
         if distance < tolerance(ray, t) {

@@ -16,7 +16,7 @@ fn trace(ray: Ray) -> Trace {
     var segment = ray.t_max;
     for (var step = 0u; step < ray.steps; step++) {
         let distance = field(ray_point(ray, t));
-        record_sample(t, distance);
+        record_sample(ray, t, distance);
         let near = tolerance(ray, t);
         // A ray that starts inside or on a surface hits at its origin. A small value does not tell
         // that it does: the field may be flat there.

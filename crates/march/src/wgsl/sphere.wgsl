@@ -9,7 +9,7 @@ fn trace(ray: Ray) -> Trace {
     var t = 0.0;
     for (var step = 0u; step < ray.steps; step++) {
         let distance = field(ray_point(ray, t));
-        record_sample(t, distance);
+        record_sample(ray, t, distance);
         // Negative distances count too: a field that overestimates leads through the surface, not
         // to it.
         if distance < tolerance(ray, t) {

@@ -10,7 +10,7 @@ fn trace(ray: Ray) -> Trace {
     var t = 0.0;
     for (var step = 0u; step < ray.steps; step++) {
         let distance = field(ray_point(ray, t));
-        record_sample(t, distance);
+        record_sample(ray, t, distance);
         if distance < tolerance(ray, t) {
             return Trace(t, HIT, step + 1u);
         }

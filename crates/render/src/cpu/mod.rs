@@ -70,6 +70,8 @@ pub struct CpuScene {
     material: Option<Tape>,
     /// What the distance is likely to be, see `Program::estimate`.
     estimate: Option<Tape>,
+    /// The gradient and the value of the field, if soft shadows follow its gradients.
+    projection: Option<Tape>,
     environment: Option<EnvironmentTapes>,
     /// True if a small value of the field may be far from the surface.
     is_loose: bool,
@@ -94,6 +96,7 @@ impl CpuScene {
         let material = material.map(|fields| Tape::for_surfaces(&program.graph, &fields));
         let planar_pixel =
             program.planar_pixel.map(|pixel| Tape::for_rays(&program.graph, &[pixel]));
+        let projected = program.gradient.filter(|_| program.falls_behind);
         let range = program.range.map(|range| Tape::for_rays(&program.graph, &[range]));
         Ok(Self {
             field: CachedField::new(tape(&[distance])?),
@@ -102,6 +105,7 @@ impl CpuScene {
             gradient: program.gradient.map(|gradient| tape(&[gradient])).transpose()?,
             material: material.transpose().map_err(refused)?,
             estimate: program.estimate.map(|estimate| tape(&[estimate])).transpose()?,
+            projection: projected.map(|gradient| tape(&[gradient, distance])).transpose()?,
             environment: EnvironmentTapes::new(program).map_err(refused)?,
             is_loose: program.is_loose,
             planar_pixel: planar_pixel.transpose().map_err(refused)?.map(Arc::new),
@@ -243,6 +247,7 @@ impl CpuScene {
                 epsilon: T::constant(view.epsilon),
                 steps: view.steps,
                 records_clearance: false,
+                full_light: T::constant(0.0),
                 ends_at_light: false,
                 ends_unproven: false,
                 is_loose: self.is_loose,
@@ -258,6 +263,7 @@ impl CpuScene {
             gradient: None,
             material: None,
             estimate: None,
+            projection: None,
             environment: None,
         }
     }
@@ -272,6 +278,7 @@ impl CpuScene {
                 .map(|tape| Gradient { whole: prepare(tape), operations: tape.operations() }),
             material: self.material.as_ref().map(prepare),
             estimate: self.estimate.as_ref().map(prepare),
+            projection: self.projection.as_ref().map(prepare),
             environment: self.environment.as_ref().map(|tapes| tapes.prepare(frame)),
             ..wave
         }

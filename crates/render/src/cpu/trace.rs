@@ -7,6 +7,7 @@ mod group;
 mod interval;
 mod limits;
 mod march;
+mod projection;
 mod rays;
 mod solve;
 
@@ -62,6 +63,8 @@ struct Walk<T> {
     evaluations: u32,
     clearance: T,
     closest: T,
+    /// The last position whose gradients were followed, and the way to the surface.
+    projection: (T, T),
     /// The last position, and the distance there.
     before: (T, T),
     /// The last position outside and the first one inside, with the distances there (`auto`,
@@ -83,6 +86,16 @@ struct Walk<T> {
     /// (`interval`).
     steepness: T,
     unproven: bool,
+}
+
+/// What a ray towards a light passes.
+#[derive(Clone, Copy)]
+struct Passing<T> {
+    /// Its position along the ray, and its distance from the ray.
+    along: T,
+    aside: T,
+    /// The width of the penumbra's cone there.
+    width: T,
 }
 
 /// The width of a penumbra's cone at a position of a ray, for a sharpness of 1. A light with a
@@ -111,6 +124,7 @@ impl<T: Real> Walk<T> {
             evaluations: 0,
             clearance: T::constant(f64::INFINITY),
             closest: zero,
+            projection: (zero, zero),
             before: (zero, zero),
             outside: None,
             inside: None,
@@ -155,9 +169,6 @@ impl<T: Real> Walk<T> {
         has_bounds: bool,
     ) -> Option<Trace<'static, T>> {
         self.evaluations += limits.method.evaluations_per_sample();
-        if limits.records_clearance {
-            self.record_clearance(distance, limits.ends_at_light);
-        }
         let next = match limits.method {
             CpuMethod::Sphere if distance < limits.epsilon => Next::Hit(self.t),
             CpuMethod::Sphere => Next::At(self.t + distance),
@@ -205,28 +216,32 @@ impl<T: Real> Walk<T> {
         }
     }
 
-    /// Records the clearance of the ray. The distances here and at the last position are the radii
-    /// of spheres; they intersect in a circle around the ray, whose radius is taken for the
+    /// What the ray passes between the last position and this one. The distances there are the
+    /// radii of spheres; they intersect in a circle around the ray, whose radius is taken for the
     /// distance of what lies there, if it lies between. Spheres that do not intersect tell nothing
     /// of what is between them.
-    fn record_clearance(&mut self, here: T, ends_at_light: bool) {
+    fn passing(&mut self, here: T, ends_at_light: bool) -> Option<Passing<T>> {
         let ((last, before), zero) = (self.before, T::constant(0.0));
         self.before = (self.t, here);
         let step = self.t - last;
-        if step > zero {
-            let back = T::constant(0.5) * (step + (here * here - before * before).div(step));
-            let (along, aside) = match back {
-                back if back <= zero || step > here + before => (self.t, here),
-                back if back >= step => (last, before),
-                back => (self.t - back, (here * here - back * back).max(zero).sqrt()),
-            };
-            let width = cone_width(&self.whole, along, ends_at_light);
-            if width > zero {
-                let ratio = aside.div(width);
-                if ratio < self.clearance {
-                    (self.clearance, self.closest) = (ratio, along);
-                }
-            }
+        if step <= zero {
+            return None;
+        }
+        let back = T::constant(0.5) * (step + (here * here - before * before).div(step));
+        let (along, aside) = match back {
+            back if back <= zero || step > here + before => (self.t, here),
+            back if back >= step => (last, before),
+            back => (self.t - back, (here * here - back * back).max(zero).sqrt()),
+        };
+        let width = cone_width(&self.whole, along, ends_at_light);
+        (width > zero).then_some(Passing { along, aside, width })
+    }
+
+    /// Records the clearance of the ray at what it passes.
+    fn record_clearance(&mut self, Passing { along, aside, width }: Passing<T>) {
+        let ratio = aside.div(width);
+        if ratio < self.clearance {
+            (self.clearance, self.closest) = (ratio, along);
         }
     }
 

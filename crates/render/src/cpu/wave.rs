@@ -41,6 +41,8 @@ pub(super) struct Wave<'a, T> {
     pub(super) material: Option<Batch<'a, T>>,
     /// What the distance is likely to be, for soft shadows and ambient occlusion.
     pub(super) estimate: Option<Batch<'a, T>>,
+    /// The gradient and the value of the field, if soft shadows follow its gradients.
+    pub(super) projection: Option<Batch<'a, T>>,
     /// The light of a picture of the surroundings.
     pub(super) environment: Option<EnvironmentBatch<'a, T>>,
 }
@@ -118,21 +120,22 @@ impl<'a, T: Real> Wave<'a, T> {
     /// Traces rays; those that record their clearance are marched through the whole field.
     fn traces(&mut self, rays: &[Ray<T>], limits: Limits<T>) -> Vec<Trace<'a, T>> {
         let records_clearance = limits.records_clearance;
+        let projection = self.projection.as_mut();
         let Some(pre_intersection) = &mut self.pre_intersection else {
-            return trace(self.field, self.range.as_mut(), rays, None, &limits);
+            return trace(self.field, self.range.as_mut(), projection, rays, None, &limits);
         };
         let known = pre_intersection.look(rays, records_clearance);
         if records_clearance {
-            return trace(self.field, self.range.as_mut(), rays, Some(&known), &limits);
+            return trace(self.field, self.range.as_mut(), projection, rays, Some(&known), &limits);
         }
         let copies = pre_intersection.copies.as_mut();
         if let Some(copies) = copies.filter(|_| limits.method.intersects_copies()) {
             return trace_among_copies(copies, rays, &known, &limits);
         }
         let Some(marched) = self.marched else {
-            return trace(self.field, self.range.as_mut(), rays, Some(&known), &limits);
+            return trace(self.field, self.range.as_mut(), projection, rays, Some(&known), &limits);
         };
-        let mut traces = trace(marched, self.range.as_mut(), rays, Some(&known), &limits);
+        let mut traces = trace(marched, self.range.as_mut(), None, rays, Some(&known), &limits);
         // Cells of another field have no gradients.
         traces.iter_mut().for_each(|trace| trace.cell = None);
         traces
@@ -335,14 +338,21 @@ impl<'a, T: Real> Wave<'a, T> {
         }
         let rays: Vec<Ray<T>> =
             shadowed.iter().map(|(hit, incoming, _)| self.shadow_ray(hit, incoming)).collect();
-        let records_clearance = matches!(light.shadow, ViewShadow::Soft(_));
-        let ends_at_light = !matches!(light.source, ViewSource::Sun(_));
-        let limits = Limits { records_clearance, ends_at_light, ..self.limits };
+        let sharpness = match light.shadow {
+            ViewShadow::Soft(sharpness) => Some(sharpness),
+            ViewShadow::Off | ViewShadow::Hard => None,
+        };
+        let limits = Limits {
+            records_clearance: sharpness.is_some(),
+            full_light: T::constant(1.0 / sharpness.unwrap_or(1.0)),
+            ends_at_light: !matches!(light.source, ViewSource::Sun(_)),
+            ..self.limits
+        };
         let mut traces = self.traces(&rays, limits);
-        if records_clearance {
-            self.estimate_clearances(&rays, &mut traces, ends_at_light);
+        if limits.records_clearance {
+            self.estimate_clearances(&rays, &mut traces, limits.ends_at_light);
         }
-        let is_estimated = self.estimate.is_some();
+        let is_estimated = self.estimate.is_some() || self.projection.is_some();
         for ((hit, _, lit), trace) in shadowed.into_iter().zip(traces) {
             let shade = &mut shades[hit.view_ray.pixel];
             shade.count(&trace);

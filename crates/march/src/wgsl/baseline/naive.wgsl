@@ -25,7 +25,7 @@ fn trace(ray: Ray) -> Trace {
             break;
         }
         distance = field(ray_point(ray, t));
-        record_sample(t, distance);
+        record_sample(ray, t, distance);
         steps++;
     }
     return Trace(t, select(MISS, CAPPED, steps == MOST_STEPS), steps);

@@ -12,7 +12,7 @@ const INTERSECTION: u32 = 2;
 const SMOOTH_UNION: u32 = 3;
 
 // A distance greater than any in a scene.
-const FAR: f32 = 1e30;
+const EMPTY_FIELD: f32 = 1e30;
 
 struct Unit {
     // The table and the index of each operand.
@@ -64,7 +64,7 @@ fn primitive_distance(kind: u32, id: u32, p: vec3f) -> f32 {
             return box_distance(boxes[id], p);
         }
         default: {
-            return FAR;
+            return EMPTY_FIELD;
         }
     }
 }
@@ -91,13 +91,13 @@ fn unit_distance(unit: Unit, p: vec3f) -> f32 {
             return smooth_union(a, b, unit.width);
         }
         default: {
-            return FAR;
+            return EMPTY_FIELD;
         }
     }
 }
 
 fn field(p: vec3f) -> f32 {
-    var nearest = FAR;
+    var nearest = EMPTY_FIELD;
     for (var i = 0u; i < arrayLength(&units); i++) {
         nearest = min(nearest, unit_distance(units[i], p));
     }

@@ -238,8 +238,11 @@ impl<'c, T: Real> Descent<'_, 'c, '_, '_, '_, T> {
         }
         let segments: Vec<(Ray<T>, [T; 2])> =
             rest.iter().map(|&index| (self.group.ray(index), [from[index], to[index]])).collect();
-        let mut fields =
-            Fields { field: self.cells.evaluator(cell), range: self.range.as_deref_mut() };
+        let mut fields = Fields {
+            field: self.cells.evaluator(cell),
+            range: self.range.as_deref_mut(),
+            projection: None,
+        };
         let factor = self.limits.method.step_budget_factor();
         for (&index, found) in
             rest.iter().zip(march_segments(cell, &mut fields, &segments, self.limits))

@@ -11,6 +11,8 @@ pub(crate) struct Limits<T> {
     pub(crate) steps: u32,
     /// True if rays record how narrowly they pass what they do not hit.
     pub(crate) records_clearance: bool,
+    /// The clearance from which on all light passes.
+    pub(crate) full_light: T,
     /// True if these rays end at their light, where the cone of a penumbra closes.
     pub(crate) ends_at_light: bool,
     /// True if a ray ends where something is not proven.

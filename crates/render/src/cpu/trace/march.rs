@@ -2,7 +2,8 @@
 
 use sdfc_graph::eval::Packet;
 
-use super::{Limits, Trace, Walk};
+use super::projection::project;
+use super::{Limits, Passing, Trace, Walk};
 use crate::cpu::cells::{Cell, Cells};
 use crate::cpu::pre_intersection::PreIntersection;
 use crate::cpu::ray::{Batch, LANES, Ray, Real, packed_from};
@@ -28,6 +29,8 @@ pub(super) struct Fields<'c, 'w, 'r, T> {
     pub(super) field: Batch<'c, T>,
     /// Bounds of the field on a segment.
     pub(super) range: Option<&'w mut Batch<'r, T>>,
+    /// The gradient and the value of the whole field, if soft shadows follow its gradients.
+    pub(super) projection: Option<&'w mut Batch<'r, T>>,
 }
 
 /// Marches those of the rays that have these indices, and replaces their results.
@@ -43,7 +46,7 @@ pub(super) fn march_some<'c, T: Real>(
     let chosen: Vec<Ray<T>> = indices.iter().map(|&index| rays[index]).collect();
     let known: Option<Vec<_>> =
         known.map(|known| indices.iter().map(|&index| known[index]).collect());
-    let found = march(cells, range, &chosen, known.as_deref(), limits);
+    let found = march(cells, range, None, &chosen, known.as_deref(), limits);
     for (&index, found) in indices.iter().zip(found) {
         let evaluations = traces[index].evaluations + found.evaluations;
         traces[index] = Trace { evaluations, ..found };
@@ -52,9 +55,10 @@ pub(super) fn march_some<'c, T: Real>(
 
 /// Marches rays along all of their length; the result has their order. Rays in one cell are marched
 /// together.
-pub(super) fn march<T: Real>(
+pub(super) fn march<'a, T: Real>(
     cells: &Cells<'_>,
-    mut range: Option<&mut Batch<'_, T>>,
+    mut range: Option<&mut Batch<'a, T>>,
+    mut projection: Option<&mut Batch<'a, T>>,
     rays: &[Ray<T>],
     known: Option<&[PreIntersection<T>]>,
     limits: &Limits<T>,
@@ -77,7 +81,11 @@ pub(super) fn march<T: Real>(
         waiting.sort_unstable_by_key(|crossing| (crossing.cell.id(), crossing.index));
         for crossings in waiting.chunk_by(|a, b| a.cell.id() == b.cell.id()) {
             let Some(&Crossing { cell, .. }) = crossings.first() else { continue };
-            let mut fields = Fields { field: cells.evaluator(cell), range: range.as_deref_mut() };
+            let mut fields = Fields {
+                field: cells.evaluator(cell),
+                range: range.as_deref_mut(),
+                projection: projection.as_deref_mut(),
+            };
             cross(crossings, &mut walks, &mut fields, limits, |index, walk, ended| {
                 if let Some(ended) = ended {
                     traces[index] = ended;
@@ -136,6 +144,9 @@ fn cross<'c, T: Real>(
     while let Some(is_sample) = waiting.take(&mut group) {
         let results =
             if is_sample { fields.samples(&group, walks) } else { fields.bounds(&group, walks) };
+        if is_sample && limits.records_clearance {
+            fields.record_clearances(&group, walks, &results, limits);
+        }
         for (crossing, result) in group.drain(..).zip(results).rev() {
             let (walk, [enter, exit]) = (&mut walks[crossing.index], crossing.span);
             let ended = if is_sample {
@@ -179,6 +190,27 @@ impl<T: Real> Fields<'_, '_, '_, T> {
         let Packet(distances) =
             self.field.scalar(packed_from(walks.map(|walk| walk.ray.at(walk.t))));
         distances
+    }
+
+    /// Records the clearance of rays, from the distances where they are.
+    fn record_clearances(
+        &mut self,
+        group: &[Crossing<'_, T>],
+        walks: &mut [Walk<T>],
+        distances: &[T],
+        limits: &Limits<T>,
+    ) {
+        let mut passings: Vec<(usize, Passing<T>)> = Vec::with_capacity(group.len());
+        for (&Crossing { index, .. }, &distance) in group.iter().zip(distances) {
+            let passing = walks[index].passing(distance, limits.ends_at_light);
+            passings.extend(passing.map(|passing| (index, passing)));
+        }
+        if let Some(projection) = &mut self.projection {
+            project(projection, walks, &mut passings, limits);
+        }
+        for (index, passing) in passings {
+            walks[index].record_clearance(passing);
+        }
     }
 
     /// The lower bounds for which rays wait.
