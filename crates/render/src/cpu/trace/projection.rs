@@ -1,5 +1,5 @@
-//! Following gradients from what rays towards a light pass to a surface: a field may be the
-//! distance to something that is not there.
+//! Follows gradients to the surface, from points that a ray towards a light passes: a field may be
+//! the distance to something that is not there.
 
 use sdfc_graph::eval::Packet;
 
@@ -97,8 +97,9 @@ impl<T: Real> Walk<T> {
         least * passing.width
     }
 
-    /// True if the field lies within the cone of the penumbra, and the last way along gradients,
-    /// which gets shorter by no more than the ray is long, neither is near nor excludes this one.
+    /// True if the way along gradients may matter: the field is less than the limit, the last
+    /// followed sample is not near, and its way does not prove that this one is too long. A
+    /// distance falls by no more than the ray moves.
     fn needs_projection(&self, passing: &Passing<T>, limits: &Limits<T>) -> bool {
         let limit = self.limit(passing, limits);
         let (at, length) = self.projection;
